@@ -43,6 +43,8 @@ def subcommands(text, is_program=False):
 EXAMPLES = re.compile(r"^Examples?\b[^\n]*:\n(?:  .*\n?)+|^`lodeline help COMMAND` explains .*\n?", re.MULTILINE)
 EVERYWHERE = {"--help", "--verbose", "--quiet"}
 OPTION = re.compile(r"^  -\S.*(?:\n {8,}\S.*)*\n?", re.MULTILINE)
+TITLE = re.compile(r"^(?:Arguments|Options|Settings|Recording|Place and time|Results|Screen):(?:\n|$)")
+ARGUMENT = re.compile(r"^  [A-Z]+ {2,}\S.*(?:\n {8,}\S.*)*\n?", re.MULTILINE)
 
 
 def named(option):
@@ -51,7 +53,7 @@ def named(option):
 
 
 def without_purpose_and_examples(text):
-    return EXAMPLES.sub("", text.partition("\n\n")[2] + "\n").rstrip()
+    return EXAMPLES.sub("", text.partition("\n\n")[2] + "\n").rstrip().removeprefix("Usage: ").replace(" [OPTIONS]", "", 1)
 
 
 def places_of_options(leaves, texts):
@@ -66,16 +68,27 @@ def places_of_options(leaves, texts):
     places = {}
     for option, found in owners.items():
         if len(found) >= 3:
-            places[option] = (None, "[many commands](#options-of-many-commands)")
+            places[option] = (None, "[Common options](#options-of-many-commands)")
         elif len(found) == 2:
             (first, text), (second, _) = found
-            words = second if f"`lodeline {' '.join(second)}`" in text else first
-            places[option] = (words, f"[{' '.join(words)}](#lodeline-{'-'.join(words)})")
+            words = second if f"`lodeline {' '.join(second)}`" in " ".join(text.split()) else first
+            places[option] = (words, f"Options of [{' '.join(words)}](#lodeline-{'-'.join(words)})")
     return places
 
 
-def without_shown(text, shown):
-    """A help text without the options of `shown` and without titles that lose all their options.
+def common_arguments(texts):
+    """The arguments that three help texts or more have in the same words; of each name the most frequent one."""
+    found = [argument.rstrip() for text in texts for argument in ARGUMENT.findall(text)]
+    common = {}
+    for argument in dict.fromkeys(found):
+        name = argument.split()[0]
+        if found.count(argument) >= 3 and found.count(argument) > found.count(common.get(name)):
+            common[name] = argument
+    return list(common.values())
+
+
+def without_shown(text, shown, arguments):
+    """A help text without the options of `shown`, the arguments, and the titles of groups.
 
     `shown` has for each option the link to the place that explains it. Also returned: a sentence with the names for each place.
     """
@@ -85,11 +98,12 @@ def without_shown(text, shown):
             names.setdefault(shown[option.rstrip()], []).append(f"`{named(option)}`")
     paragraphs = []
     for paragraph in text.split("\n\n"):
-        rest = OPTION.sub(lambda option: "" if option.group().rstrip() in shown else option.group(), paragraph).rstrip()
-        is_bare_title = rest != paragraph.rstrip() and rest.endswith(":") and "\n" not in rest
-        if not is_bare_title:
+        rest = OPTION.sub(lambda option: "" if option.group().rstrip() in shown else option.group(), paragraph)
+        rest = ARGUMENT.sub(lambda row: "" if row.group().rstrip() in arguments else row.group(), rest).rstrip()
+        rest = TITLE.sub("", rest)
+        if rest:
             paragraphs.append(rest)
-    return "\n\n".join(paragraphs), [f"Options of {place}: {', '.join(options)}." for place, options in names.items()]
+    return "\n\n".join(paragraphs), [f"{place}: {', '.join(options)}." for place, options in names.items()]
 
 
 def commands_page(program):
@@ -99,20 +113,18 @@ def commands_page(program):
         leaves += [((name, word), text) for word, text in inner] or [((name,), summary)]
     page = ["# Commands", "",
             "*The script `scripts/generate_reference.py` writes this page from the help texts of the program.*", "",
-            "| command | purpose |", "| --- | --- |"]
-    for words, summary in leaves:
-        name = " ".join(words)
-        page.append(f"| [`lodeline {name}`](#lodeline-{'-'.join(words)}) | {summary} |")
-    page += ["", "`lodeline help COMMAND` prints the text of one command, with examples. `lodeline --version` prints the version.",
-             "Nearly all commands have `--verbose` and `--quiet`. [Exit codes](exit-codes.md) are the same for all commands."]
+            "`lodeline help` lists the commands. `lodeline help COMMAND` prints the text of one, with examples. Nearly all",
+            "commands have `--verbose` and `--quiet`. [Exit codes](exit-codes.md) are the same for all."]
     texts = [without_purpose_and_examples(help_of(program, *words)) for words, _ in leaves]
     places = places_of_options(leaves, texts)
     shared = [option for option, (owner, _) in places.items() if owner is None]
-    page += ["", "## Options of many commands", "", "```text", *"\n".join(shared).splitlines(), "```"]
-    for (words, _), text in zip(leaves, texts):
+    arguments = common_arguments(texts)
+    page += ["", "## Options of many commands", "", "```text", *"\n".join(arguments + shared).splitlines(), "```"]
+    for (words, summary), text in zip(leaves, texts):
         elsewhere = {option: place for option, (owner, place) in places.items() if owner != words}
-        rest, sentences = without_shown(text, elsewhere)
-        page += ["", f"## lodeline {' '.join(words)}", "", "```text", *(line.rstrip() for line in rest.splitlines()), "```"]
+        rest, sentences = without_shown(text, elsewhere, arguments)
+        page += ["", f"## lodeline {' '.join(words)}", "", f"{summary}.", "", "```text",
+                 *(line.rstrip() for line in rest.splitlines()), "```"]
         for sentence in sentences:
             page += ["", *textwrap.wrap(sentence, 118, break_on_hyphens=False)]
     return "\n".join(page) + "\n"
@@ -144,15 +156,13 @@ def settings_page(config):
     page = ["# Settings", "",
             "*The script `scripts/generate_reference.py` writes this page from the settings of the program.*", "",
             "The defaults serve all recordings. Change a setting on the command line, `--set source.duration_s=60`,",
-            "or in a YAML file, `-c config.yaml`. The command line goes over the file. Every run writes all settings in",
-            "effect to `config.yaml` in its output folder; `-c` with that file repeats the run.", "",
-            "The unit of a setting is the end of its name. A setting whose name contains `sigma` is one standard",
-            "deviation. An unknown setting is an error that names the nearest known one. [Theory](../theory/index.md)",
-            "explains the models.", "",
+            "or in a YAML file, `-c config.yaml`. The command line goes over the file. `-c` with the `config.yaml` of an",
+            "output folder repeats its run. The unit of a setting is the end of its name. A `sigma` is one standard",
+            "deviation.", "",
             "| setting | default | meaning |", "| --- | --- | --- |", *rows, "", "## Expert settings", "",
-            "Experiments need further settings; users do not. `lodeline settings --expert` prints all settings with their",
-            "meaning and default. `expert.` may be left out of a name: `--set window.keyframes=10`.",
-            "An IMU counts as calibrated by its maker when `axes_sigma` of its calibration is below 0.002."]
+            "`lodeline settings --expert` also prints the settings that only experiments need. `expert.` may be left out of a",
+            "name: `--set window.keyframes=10`. An IMU counts as calibrated by its maker when `axes_sigma` of its calibration",
+            "is below 0.002."]
     return "\n".join(page) + "\n"
 
 

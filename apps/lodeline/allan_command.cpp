@@ -82,9 +82,8 @@ void addAllanCommand(CLI::App& program) {
       "allan", "Noise of gyroscope, accelerometer and magnetometer from a record at rest");
   command
       ->add_option("DATA", arguments->request.data,
-                   "folder with mav0 (EuRoC layout), ROS bag (.bag, .mcap, .db3, folder), film with "
-                   "telemetry or sensor log (CSV file, folder or zip of them, log of PX4 or ArduPilot); "
-                   "cameras and calibration may be missing")
+                   "EuRoC folder (mav0), ROS bag (.bag, .mcap, .db3, folder), film or sensor log (CSV, zip, "
+                   "PX4, ArduPilot)")
       ->required();
   addBagOptions(&arguments->request.bag, command);
   command->add_option("-o,--output", arguments->output,

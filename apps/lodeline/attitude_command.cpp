@@ -165,8 +165,8 @@ void addAttitudeCommand(CLI::App& program) {
       "attitude", "Orientation and heading from gyroscope, accelerometer and magnetometer, without images");
   command
       ->add_option("DATA", arguments->data,
-                   "folder with mav0 (EuRoC layout), ROS bag (.bag, .mcap, .db3, folder) or sensor log (CSV "
-                   "file, folder or zip of them, log of PX4 or ArduPilot); cameras may be missing")
+                   "EuRoC folder (mav0), ROS bag (.bag, .mcap, .db3, folder), film or sensor log (CSV, zip, "
+                   "PX4, ArduPilot)")
       ->required();
   addBagOptions(&arguments->bag, command);
   command
@@ -190,7 +190,6 @@ void addAttitudeCommand(CLI::App& program) {
   addVerbosity(&arguments->verbosity, command);
   command->footer(
       "Orientation is body to world, x east, y north, z up. heading is the azimuth of the body's x axis.\n"
-      "status says what held heading: magnetic, or why the field was rejected.\n"
       "Examples:\n"
       "  lodeline attitude dive1 -o attitude --mag-calibration mag.yaml --site 29.83,-82.60,0 --date "
       "2026-11-21\n"

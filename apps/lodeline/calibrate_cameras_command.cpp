@@ -19,15 +19,11 @@ namespace {
 
 const char* const kFooter =
     R"(Images of one camera are enough. Inertial readings also give the pose on the IMU and the delay.
-The board is a grid of AprilTags (36h11), described in Kalibr's format:
-  {target_type: aprilgrid, tagCols: 6, tagRows: 6, tagSize: 0.055, tagSpacing: 0.3}
-Results: rig.yaml (for --rig), camchain-imucam.yaml (Kalibr's format), calibration.json, report.txt, report.html, figures.
+docs/how-to/calibrate-cameras.md explains the board, a grid of AprilTags (36h11), and how to move the rig.
 Examples, the port under water with a lens from air:
   lodeline calibrate cameras air -o lens --board board.yaml
   lodeline calibrate cameras water -o rig --board board.yaml --rig lens/rig.yaml --keep lens \
-    --port flat
-docs/how-to/calibrate-cameras.md explains how to move the rig.
-Ends with 3 where no calibration is possible, and, with all files written, where it is poor.)";
+    --port flat)";
 
 struct CamerasArguments {
   std::string data;
@@ -135,9 +131,13 @@ void addCalibrateCamerasCommand(CLI::App& calibrate_command) {
       "cameras", "Lenses, ports, poses and delay of cameras from a board, with uncertainties and a verdict");
   command
       ->add_option("DATA", arguments->data,
-                   "folder with mav0 (EuRoC layout), ROS bag (.bag, .mcap, .db3, folder)")
+                   "EuRoC folder (mav0), ROS bag (.bag, .mcap, .db3, folder) or film")
       ->required();
-  command->add_option("-o,--output", arguments->output, "folder to write")->required();
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "folder for rig.yaml (for --rig), camchain-imucam.yaml (Kalibr), calibration.json, "
+                   "reports and figures")
+      ->required();
   addBagOptions(&arguments->bag, command);
   command->add_option("--board", arguments->board, "board in Kalibr's format (default: board.yaml in DATA)");
   addSelection(arguments.get(), command);

@@ -26,16 +26,15 @@ namespace lodeline {
 namespace {
 
 const char* const kCalibrateFooter =
-    R"(Readings of the IMU in DATA also give the rotation to the IMU and the lag. Without --rig, the noise of a usual
-IMU is assumed. A text file has the header `t [s], mx [uT], my [uT], mz [uT]`, or rows of t, mx, my, mz or mx, my, mz.
+    R"(Readings of the IMU in DATA also give the rotation to the IMU and the lag.
+A text file has the header `t [s], mx [uT], my [uT], mz [uT]`, or rows of t, mx, my, mz or mx, my, mz.
 docs/how-to/calibrate-magnetometer.md explains how to move the rig, docs/how-to/compensate-currents.md the still test.
 Examples:
   lodeline calibrate magnetometer dive1 -o mag.yaml --to 90 --site 29.83,-82.60,20 --date 2026-11-21
   lodeline calibrate magnetometer cloud.txt --unit mG -o mag.yaml --plots plots
   lodeline calibrate magnetometer after.yaml --compare before.yaml
   lodeline calibrate magnetometer still_test --currents -o currents.yaml --old mag.yaml
-  lodeline calibrate magnetometer still_test_2 --currents --check currents.yaml
-Ends with 3, and writes nothing, where the readings cannot calibrate the magnetometer.)";
+  lodeline calibrate magnetometer still_test_2 --currents --check currents.yaml)";
 
 struct CalibrateArguments {
   std::string data;
@@ -148,10 +147,9 @@ void addMagnetometerCommand(CLI::App& calibrate_command) {
       "magnetometer",
       "Soft iron, hard iron, rotation to the IMU and lag, with their uncertainties and a verdict");
   command
-      ->add_option("DATA", arguments->data,
-                   "folder with mav0 (EuRoC layout), ROS bag (.bag, .mcap, .db3, folder), sensor log (CSV "
-                   "file, folder or zip of them, log of PX4 or ArduPilot), text file of readings, or with "
-                   "--compare a calibration")
+      ->add_option(
+          "DATA", arguments->data,
+          "EuRoC folder (mav0), ROS bag, sensor log, text file of readings, or with --compare a calibration")
       ->required();
   addBagOptions(&arguments->bag, command);
   command->add_option("-o,--output", arguments->output,

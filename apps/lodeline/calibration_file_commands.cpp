@@ -74,9 +74,7 @@ void addConvertCalibrationCommand(CLI::App& program) {
   addOverwrite(&arguments->overwrite, command);
   addVerbosity(&arguments->verbosity, command);
   command->footer(
-      "Files are known by their keys: Kalibr, OpenVINS, VINS-Fusion, VINS-Mono, ORB-SLAM3, OKVIS, Basalt, "
-      "EuRoC,\n"
-      "ROS's camera_info, rig files of Lodeline. `--rig` reads these files directly.\n"
+      "docs/how-to/read-calibrations.md lists the programs. `--rig` reads their files directly.\n"
       "Examples:\n"
       "  lodeline convert-calibration euroc_stereo_imu_config.yaml -o rig.yaml\n"
       "  lodeline convert-calibration kalibr_imucam_chain.yaml kalibr_imu_chain.yaml -o rig.yaml\n"

@@ -127,8 +127,7 @@ void addConvertCommand(CLI::App& program) {
       "convert", "Turn a recording into another format: EuRoC folder, ROS 1 bag, ROS 2 bag (MCAP, SQLite)");
   command
       ->add_option("SRC", arguments->source,
-                   "folder with mav0 (EuRoC layout), ROS bag (.bag, .mcap, .db3, folder) or film with "
-                   "telemetry (with all chapters)")
+                   "EuRoC folder (mav0), ROS bag (.bag, .mcap, .db3, folder) or film")
       ->required();
   command
       ->add_option("DST", arguments->target, "NAME.bag, NAME.mcap, NAME.db3, or a folder; must not exist yet")
@@ -149,9 +148,8 @@ void addConvertCommand(CLI::App& program) {
   addOverwrite(&arguments->overwrite, command);
   addVerbosity(&arguments->verbosity, command);
   command->footer(
-      "Readings, stamps and pixels are kept; findings name what the other format cannot hold.\n"
       "The calibration of a folder goes into NAME.rig.yaml beside the bag. --from and --to count from the "
-      "first\nreading. --cameras 1 makes a recording whose cam0 is camera 1.\n"
+      "first reading.\n"
       "Examples:\n"
       "  lodeline convert dive1 dive1.bag\n"
       "  lodeline convert dive1 dive1.mcap\n"

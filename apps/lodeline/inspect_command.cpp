@@ -93,10 +93,9 @@ void addInspectCommand(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("inspect", "Tell what is wrong with a recording, the most harmful first");
   command
-      ->add_option(
-          "DATA", arguments->data,
-          "folder with mav0 (EuRoC layout), ROS bag (.bag, .mcap, .db3, folder), film with telemetry (with "
-          "all chapters) or sensor log (CSV file, folder or zip of them, log of PX4 or ArduPilot)")
+      ->add_option("DATA", arguments->data,
+                   "EuRoC folder (mav0), ROS bag (.bag, .mcap, .db3, folder), film or sensor log (CSV, zip, "
+                   "PX4, ArduPilot)")
       ->required();
   addBagOptions(&arguments->bag, command);
   command

@@ -49,9 +49,7 @@ void executeRun(RunRequest request) {
 void addRunOptions(RunArguments* arguments, CLI::App* command) {
   RunRequest* const request = &arguments->request;
   command
-      ->add_option(
-          "DATA", request->data,
-          "folder with mav0 (EuRoC layout), ROS bag (.bag, .mcap, .db3, folder) or film with telemetry")
+      ->add_option("DATA", request->data, "EuRoC folder (mav0), ROS bag (.bag, .mcap, .db3, folder) or film")
       ->required();
   command->add_option("-o,--output", request->output, "folder for the results; made where it is missing")
       ->required();
@@ -63,13 +61,10 @@ void addRunOptions(RunArguments* arguments, CLI::App* command) {
       ->type_name("SECONDS");
   command->add_option("--mag-calibration", request->magnetometer_calibration,
                       "what `lodeline calibrate magnetometer` wrote");
-  command->add_option(
-      "--magnetometer", request->magnetometer,
-      "use of the magnetometer: off, paper or absolute (default: absolute where it is calibrated)");
+  command->add_option("--magnetometer", request->magnetometer,
+                      "off, paper or absolute (default: absolute where it is calibrated)");
   addSite(&arguments->site, command);
-  command->add_option(
-      "--map", request->map,
-      "map of earlier dives (`lodeline map`), in which the run looks for the place of the dive");
+  command->add_option("--map", request->map, "map of earlier dives, in which the run looks for its place");
   addStartOptions(&arguments->start, command)->needs("--map");
   command
       ->add_option(

@@ -20,8 +20,7 @@ namespace lodeline {
 namespace {
 
 const char* const kBatchFooter =
-    R"(docs/how-to/process-many-dives.md explains the list. Several processes may work on one folder at the same time.
-Results: results/NAME, failed/NAME, table.csv, table.md.
+    R"(docs/how-to/process-many-dives.md explains list and results.
 Examples:
   lodeline batch LIST.yaml -o season --jobs 4
   lodeline batch LIST.yaml -o season --shard 3/100

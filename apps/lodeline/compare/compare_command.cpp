@@ -24,10 +24,7 @@ namespace lodeline {
 namespace {
 
 const char* const kCompareFooter =
-    R"(Methods: off (images and inertial readings alone), paper and absolute (docs/theory/magnetometer.md), azimuth (the
-trajectory of off, its heading corrected by the 20 s running median of the field's azimuth).
-Runs of a scenario differ by the noise of its sensors, with the same images; runs of a folder by the front end's seed.
-Bags are converted to folders in --recordings first. Given again, the command makes only what is missing.
+    R"(docs/how-to/compare-methods.md explains the methods. Given again, the command makes only what is missing.
 Examples:
   lodeline compare demo --realism field -o demo_compared
   lodeline compare dive1 dive2 --methods off,absolute --runs 1 --mag-calibration mag.yaml -o compared
@@ -161,9 +158,8 @@ void addCompareCommand(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "compare", "Compare methods of using the magnetometer on recordings with ground truth");
   command
-      ->add_option(
-          "DATA|SCENARIO", request->inputs,
-          "folders in the EuRoC layout or ROS bags, with ground truth; or scenarios of `lodeline simulate`")
+      ->add_option("DATA|SCENARIO", request->inputs,
+                   "EuRoC folders or ROS bags with ground truth, or scenarios of `lodeline simulate`")
       ->required();
   command->add_option("-o,--output", request->output, "folder for the results; made where it is missing")
       ->required();

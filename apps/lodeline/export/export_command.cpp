@@ -26,7 +26,7 @@ void addPlaceOptions(CLI::App* command, ExportArguments* arguments) {
                       "else of the pressure sensor, else 0");
   command->add_option(
       "--geoid-height", arguments->map.geoid_height_m,
-      "height of the vertical datum above the WGS 84 ellipsoid, m, for GeoJSON; without it, PROJ's, else 0");
+      "height of the vertical datum above the WGS 84 ellipsoid, m; without it, PROJ's, else 0");
   command->add_option("--vertical-datum", arguments->map.vertical_datum,
                       "level that HEIGHT counts from: EPSG:5703 (NAVD88), EPSG:5773 (EGM96), ellipsoid");
   command
@@ -43,25 +43,21 @@ void addPlaceOptions(CLI::App* command, ExportArguments* arguments) {
 
 void addSurveyOptions(CLI::App* command, ExportArguments* arguments) {
   DiveMapOptions& map = arguments->map;
-  command->add_option(
-      "--name", map.name,
-      "name of survey and files, with several runs of the project; without it, that of the run's folder");
+  command->add_option("--name", map.name, "name of survey and files; without it, that of the run's folder");
   command->add_option("--title", map.title, "title of the survey");
   command->add_option("--team", map.team, "name of a person of the team; may be repeated");
   command->add_option("--spacing", map.stations.spacing_m, "distance between stations on a straight way, m")
       ->check(CLI::Range(0.5, 1000.0))
       ->capture_default_str();
   command
-      ->add_option(
-          "--relative-sigma", map.relative_sigma,
-          "uncertainty of the end over the length of the line, such as 0.01; without it, that of the run")
+      ->add_option("--relative-sigma", map.relative_sigma,
+                   "uncertainty of the end over the length of the line; without it, that of the run")
       ->check(CLI::Range(1e-6, 1.0));
   command->add_flag("--closed", map.is_closed,
                     "the dive ended exactly where it began; the survey program spreads the misclosure");
   command->add_flag("--no-splays", arguments->no_splays, "write no legs to the walls");
   command->add_option("--recording", arguments->recording,
-                      "recording of the run (folder or ROS bag): its sonar gives walls, COLMAP takes cameras "
-                      "and images from it");
+                      "recording of the run, for walls by its sonar, and for COLMAP's cameras and images");
   addBagOptions(&arguments->bag, command);
 }
 

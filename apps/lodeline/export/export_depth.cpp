@@ -54,18 +54,15 @@ void reportContradiction(double start_depth_m, const RunFolder& run, Diagnostics
 }  // namespace
 
 void addDepthOptions(CLI::App* command, DepthProfileArguments* arguments) {
-  CLI::Option* file = command->add_option("--depth-profile", arguments->file,
-                                          "log of a dive computer or a diver to compare with the run (CSV "
-                                          "with time and depth, Subsurface, UDDF, UDCF, Suunto, DL7)");
-  command
-      ->add_option(
-          "--dive", arguments->dive,
-          "number of the dive in that log, or the start of its date (2026-11-21, \"2026-11-21 10:34\")")
+  CLI::Option* file =
+      command->add_option("--depth-profile", arguments->file,
+                          "log of a dive computer or a table of depths to compare with the run");
+  command->add_option("--dive", arguments->dive, "number of the dive in that log, or the start of its date")
       ->needs(file);
   command->add_flag("--correct-depth", arguments->correct, "take the heights from that profile")->needs(file);
   command
       ->add_option("--profile-lag", arguments->lag_s,
-                   "seconds to add to the times of the profile; without it, they are estimated")
+                   "seconds to add to the times of the profile; without it, estimated")
       ->needs(file);
 }
 

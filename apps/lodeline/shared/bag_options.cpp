@@ -9,17 +9,17 @@ namespace lodeline {
 void addBagOptions(BagArguments* arguments, CLI::App* command) {
   command
       ->add_option("--rig", arguments->rig_files,
-                   "calibration of the rig: rig.yaml, or files of Kalibr, OpenVINS, VINS-Fusion, ORB-SLAM3, "
-                   "OKVIS, Basalt; without it, NAME.rig.yaml beside the bag, or what lies in the folder")
+                   "calibration of the rig, also of another program; without it, NAME.rig.yaml beside the "
+                   "bag, or what lies in the folder")
       ->type_name("FILE");
   command
       ->add_option("--topic", arguments->topics,
                    "topic of a sensor in a bag (cam0, imu0, mag0, dvl0 and so on); without it, found by "
                    "type; imu0=/gyro,/accel unites two topics")
       ->type_name("SENSOR=TOPIC");
-  command->add_flag("--received-times", arguments->use_received_times,
-                    "use the times at which messages were recorded, where the header stamps of a bag are not "
-                    "filled; they are late and uneven");
+  command->add_flag(
+      "--received-times", arguments->use_received_times,
+      "use the times at which messages were recorded, which are late and uneven, in place of header stamps");
 }
 
 }  // namespace lodeline

@@ -253,7 +253,7 @@ void SensorNoiseAnalysis::reportFit(const SensorNoise& noise) const {
   if (fit.ramp.value > 0.0) {
     report(Severity::Warning, "_drift",
            fmt::format("drifts steadily by {:.2g} {} an hour: temperature or warming up; leave the first "
-                       "minutes out (--skip)",
+                       "minutes out (--from)",
                        3600.0 * fit.ramp.value, sensor_.unit));
   }
   const auto claim = [&](const NoiseFigure& figure, const char* kind, const char* what, double good) {

@@ -20,9 +20,24 @@ namespace lodeline {
 ///   pixels                        4 px; the bearing is what was measured
 ///   sigmas                        5 %
 ///
-/// docs/reference/map-file.md describes the bytes. Throws InputError for more than 65,535 features, a feature
-/// without rays, and cameras beyond 6 or not in rising order. Bearings must be unit vectors, sigmas positive,
-/// numbers finite.
+/// The bytes, little-endian (columns and lengths as in packed_bytes.h):
+///
+///   version of the layout (1 byte), number of features (2 bytes), descriptors (32 bytes each)
+///   code of the first track (8 bytes), bytes of a track code (1 byte), column of track codes
+///   column of kinds (1 byte): bit c for a ray of camera c, bit 7 for a point
+///   for each camera with rays: function of the pixels, function of the origins (RayFunctions)
+///   steps of directions (2 bytes), step of distances (4 bytes)
+///   columns of the first rays: u, v (2 bytes), sigma (1 byte)
+///   columns of the points: distance (2 bytes), place across the first ray, sigma of the distance (1 byte)
+///   x, y, z of the points without such a place (12 bytes each)
+///   columns of the further rays: place relative to the point, sigma (1 byte)
+///   columns u, v (2 bytes) of the further rays without such a place
+///
+/// A track code is 0 for a corner without track, 2d + 1 for a difference d >= 0 to the track before, and -2d
+/// for a negative one. The column has 1 in place of the first code. A function begins with 1 for a polynomial
+/// (BearingPolynomial) and 0 for a list of float32. Throws InputError for more than 65,535 features, a
+/// feature without rays, and cameras beyond 6 or not in rising order. Bearings must be unit vectors, sigmas
+/// positive, numbers finite.
 Bytes packFeatures(const std::vector<MapFeature>& features);
 
 /// Throws InputError where the bytes are not what packFeatures() wrote.
