@@ -6,7 +6,7 @@
 #include "lodeline/factors/calibrated_reprojection_factor.h"
 #include "lodeline/factors/inertial_factor.h"
 #include "lodeline/factors/intrinsics_factor.h"
-#include "lodeline/factors/port_factor.h"
+#include "lodeline/factors/ports/port_factor.h"
 
 namespace lodeline {
 

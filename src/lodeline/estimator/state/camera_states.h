@@ -19,7 +19,7 @@ struct CameraStates {
   ParameterBlock* shutter = nullptr;       ///< null where all shutters are global (factors/rolling_shutter.h)
   std::vector<ParameterBlock*> secondary;  ///< of camera 1, 2, ...
   std::vector<ParameterBlock*> intrinsics;  ///< of every camera; empty where they are not estimated
-  /// Of every camera, null without a port (factors/port_factor.h); empty where no port is estimated.
+  /// Of every camera, null without a port (factors/ports/port_factor.h); empty where no port is estimated.
   std::vector<ParameterBlock*> ports;
 
   explicit operator bool() const { return camera0 != nullptr; }

@@ -1,4 +1,4 @@
-#include "lodeline/factors/port_factor.h"
+#include "lodeline/factors/ports/port_factor.h"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -6,7 +6,7 @@
 
 #include "lodeline/cameras/port_camera.h"
 #include "lodeline/factors/calibrated_reprojection_factor.h"
-#include "lodeline/factors/port_factor.h"
+#include "lodeline/factors/ports/port_factor.h"
 #include "lodeline/factors/reprojection_scene.h"
 
 namespace lodeline {
