@@ -82,6 +82,14 @@ const char* toString(Mode mode);
 /// tangential coefficients, two of a tilted port. docs/theory/self-calibration.md has the formula.
 using IntrinsicsCorrection = Eigen::Matrix<double, 10, 1>;
 
+/// Change of the port of a camera against its file: for a plate the turn of the normal about x and y of the
+/// camera (rad) and of the distance (m), for a dome that of the centre (m). All zero without a port.
+struct PortCorrection {
+  Vec3 change = Vec3::Zero();
+  Vec3 sigma = Vec3::Zero();  ///< claimed error of the change; NaN where no covariance was computed
+  bool is_dome = false;
+};
+
 /// Present values of the camera calibration states.
 struct CameraCorrections {
   std::vector<Eigen::Matrix<double, 6, 1>> extrinsics;  ///< [phi, xi] of each camera, rad and m
@@ -89,7 +97,8 @@ struct CameraCorrections {
   std::vector<double> line_delays_s;  ///< of each camera's rolling shutter; empty where all are global
   /// Of each camera as in factors/intrinsics_factor.h; empty where the intrinsics are not estimated.
   std::vector<IntrinsicsCorrection> intrinsics;
-  bool are_files_held = false;  ///< of intrinsics and secondary rotations, see IntrinsicsModelSelection
+  std::vector<PortCorrection> ports;  ///< of each camera, by the batch solution; empty where all are held
+  bool are_files_held = false;        ///< of intrinsics and secondary rotations, see IntrinsicsModelSelection
 };
 
 /// Direction of the world's y axis.
@@ -281,6 +290,7 @@ struct RefinementSummary {
          sigma_m = 0.0;  ///< reported for the last frame: root of the trace of the position covariance
   double processor_s = 0.0;
   bool has_covariance = false;
+  std::optional<CameraCorrections> camera_corrections;  ///< if ports are states
   /// Pairs of landmarks, and of a landmark and a single observation, that loop observations connect: those
   /// found in the record, and those in use at the end.
   int loop_links = 0, loop_links_used = 0;

@@ -35,7 +35,8 @@ struct RunFolder {
   /// where they were not estimated.
   std::vector<Eigen::Matrix<double, 6, 1>> camera_corrections;
   std::vector<IntrinsicsCorrection>
-      intrinsics_corrections;  ///< as in factors/intrinsics_factor.h; may be empty
+      intrinsics_corrections;                    ///< as in factors/intrinsics_factor.h; may be empty
+  std::vector<PortCorrection> port_corrections;  ///< of each camera; may be empty
 };
 
 /// What a map needs of the estimates of one run, or of its Refinement. The world turns to a north that was

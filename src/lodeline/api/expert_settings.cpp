@@ -93,6 +93,11 @@ void bindCameraCalibration(Settings* settings, CameraCalibrationOptions* cameras
       "expert.camera_calibration.port_tilt_sigma", &cameras->port_tilt_sigma,
       "Effect of a tilted port that the lens of the file does not contain. `0.012` is a tilt of 0.8 "
       "degrees, `0` none.");
+  settings->bind("expert.camera_calibration.port_normal_sigma_rad", &cameras->port_normal_sigma_rad,
+                 "`refine`: normal of a flat port in the rig file. `0` keeps it fixed.");
+  settings->bind(
+      "expert.camera_calibration.port_distance_sigma_m", &cameras->port_distance_sigma_m,
+      "`refine`: distance of a flat port in the rig file, or centre of a dome. `0` keeps it fixed.");
   settings->bind("expert.camera_calibration.trust_confirmed_files", &cameras->trust_confirmed_files,
                  "Keep intrinsics and stereo rotation fixed at the values of their files while the images "
                  "confirm them.");

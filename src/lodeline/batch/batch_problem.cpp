@@ -8,6 +8,7 @@
 #include "lodeline/estimator/problem/robust_loss.h"
 #include "lodeline/estimator/problem/window_terms.h"
 #include "lodeline/estimator/self_calibration/intrinsics_model_selection.h"
+#include "lodeline/estimator/state/camera_states.h"
 #include "lodeline/estimator/uncertainty/reported_covariance.h"
 
 namespace lodeline {
@@ -29,7 +30,7 @@ BatchProblem::BatchProblem(const Rig& rig, const EstimatorOptions& options, cons
   addTracks(record, loops.observations);
   addGlobals(record);
   addStartPrior(record);
-  holdIntrinsics(record.globals());
+  addLenses(rig, record.globals());
   believeInFilesAsBefore(record);
   addImuAxes(record.globals());
   resetLinearizationPoints();
@@ -271,6 +272,17 @@ Eigen::Matrix<double, 15, 15> BatchProblem::covarianceOf(size_t index,
   covariance.topRightCorner<6, 9>() = covariance.bottomLeftCorner<9, 6>().transpose();
   covariance.bottomRightCorner<9, 9>() = inverse.block(motion, motion);
   return 0.5 * (covariance + covariance.transpose());
+}
+
+std::vector<Vec3> BatchProblem::portSigmas(const BlockSkylineCholesky& inverse) const {
+  std::vector<Vec3> sigmas;
+  for (const ParameterBlock* port : cameraStates(window_).ports) {
+    sigmas.emplace_back(Vec3::Zero());
+    if (!port) continue;
+    const int row = rowOf(port->value.data());
+    sigmas.back() = inverse.block(row, row).diagonal().cwiseSqrt();
+  }
+  return sigmas;
 }
 
 AzimuthCovariance BatchProblem::azimuth(size_t index, const BlockSkylineCholesky& inverse) const {

@@ -90,6 +90,8 @@ class BatchProblem {
 
   /// Covariance of a state's [dp, dtheta, dv, db_g, db_a], from the inverse of the system.
   Eigen::Matrix<double, 15, 15> covarianceOf(size_t state, const BlockSkylineCholesky& inverse) const;
+  /// Claimed errors of the ports of all cameras (PortCorrection); empty where none is estimated.
+  std::vector<Vec3> portSigmas(const BlockSkylineCholesky& inverse) const;
   /// Covariance of the field's azimuth, and with a state; zero where the field is not a state.
   AzimuthCovariance azimuth(size_t state, const BlockSkylineCholesky& inverse) const;
 
@@ -101,10 +103,12 @@ class BatchProblem {
   void addTracks(const EstimatorLog& record, const std::vector<LoopObservation>& loops);
   void addGlobals(const EstimatorLog& record);
   void addStartPrior(const EstimatorLog& record);
-  /// Holds the intrinsics at the final values of the run (`globals`). If they were free, they would follow
-  /// points that slide in the images along a barely observable mode: a longer focal length with a camera
-  /// further back.
-  void holdIntrinsics(const GlobalValues& globals);
+  /// Adds the intrinsics and ports. Without a port, the intrinsics are held at the final values of the run
+  /// (`globals`). If they were free, they would follow points that slide in the images along a barely
+  /// observable mode: a longer focal length with a camera further back. Behind a port, these values contain
+  /// the error of the port, so the intrinsics have the prior of their file. The port takes the place of the
+  /// coefficients of a tilted port.
+  void addLenses(const Rig& rig, const GlobalValues& globals);
   /// Holds the files or frees them, as the run did in the end.
   void believeInFilesAsBefore(const EstimatorLog& record);
   void addImuAxes(const GlobalValues& globals);

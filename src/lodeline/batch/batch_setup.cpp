@@ -202,22 +202,31 @@ void BatchProblem::addStartPrior(const EstimatorLog& record) {
   }
 }
 
-void BatchProblem::holdIntrinsics(const GlobalValues& globals) {
+void BatchProblem::addLenses(const Rig& rig, const GlobalValues& globals) {
   CameraCalibrationOptions held = options_.camera_calibration;
-  held.focal_length_sigma = held.principal_point_sigma_px = held.radial_sigma = 0.0;
-  held.tangential_sigma = held.port_tilt_sigma = 0.0;
-  Prior prior;
+  held.port_tilt_sigma = 0.0;
+  const Eigen::VectorXd by_file = intrinsicsSigmas(held);
+  held.focal_length_sigma = held.principal_point_sigma_px = held.radial_sigma = held.tangential_sigma = 0.0;
+  Prior prior, of_ports;
   addIntrinsicsStates(window_, prior, static_cast<int>(cameras_.size()), held);
   if (prior.empty()) return;
-  const std::vector<ParameterBlock*> lenses = cameraStates(window_).intrinsics;
-  for (size_t camera = 0; camera < lenses.size(); ++camera) {
-    const auto end = globals.find(lenses[camera]->name);
-    if (end == globals.end()) continue;
-    lenses[camera]->value = end->second;
-    prior.blocks[camera].linearization_point =
-        Eigen::Map<const Eigen::VectorXd>(end->second.data(), static_cast<Eigen::Index>(end->second.size()));
+  addPortStates(window_, of_ports, rig, options_.camera_calibration);
+  const CameraStates states = cameraStates(window_);
+  for (size_t camera = 0; camera < states.intrinsics.size(); ++camera) {
+    ParameterBlock& lens = *states.intrinsics[camera];
+    const auto end = globals.find(lens.name);
+    if (end != globals.end()) lens.value = end->second;
+    const auto size = static_cast<Eigen::Index>(lens.value.size());
+    if (states.portOf(static_cast<int>(camera))) {
+      std::fill(lens.value.end() - 2, lens.value.end(), 0.0);
+      const auto row = size * static_cast<Eigen::Index>(camera);
+      prior.sqrt_information.diagonal().segment(row, size) = by_file.cwiseInverse();
+    } else {
+      prior.blocks[camera].linearization_point = Eigen::Map<const Eigen::VectorXd>(lens.value.data(), size);
+    }
   }
   priors_.push_back(std::move(prior));
+  if (!of_ports.empty()) priors_.push_back(std::move(of_ports));
 }
 
 void BatchProblem::believeInFilesAsBefore(const EstimatorLog& record) {

@@ -74,8 +74,7 @@ void placeLandmark(Window& window, const FactorBuilder& factors, const LandmarkO
   const CameraStates cameras = cameraStates(window);
   const auto viewOf = [&](const Observation& seen) {
     Observation observation = seen;
-    observation.measurement =
-        atTimeOfImage(seen, factors.motionOf(*window.find(seen.frame), seen.camera), cameras);
+    observation.measurement = factors.presentMeasurement(window, seen, cameras);
     // Pixels per angle, geometric mean of both axes.
     const double pixels = std::sqrt(std::abs(observation.measurement.sqrt_information.determinant()));
     Rigid3 world_from_ray =

@@ -173,6 +173,8 @@ Refinement refine(const Rig& rig, const EstimatorOptions& of_run, const Estimato
   summary.has_covariance = !reported.empty();
   result.frames = refinedFrames(problem, rig, options, record, posterior, reported, removed);
   result.landmarks = mapPoints(problem);
+  const std::optional<CameraCorrections>& cameras = result.frames.back().camera_corrections;
+  if (cameras && !cameras->ports.empty()) summary.camera_corrections = cameras;
   measureMoves(record.frames(), result.frames, &summary);
   summary.processor_s = processSeconds() - start_s;
   return result;

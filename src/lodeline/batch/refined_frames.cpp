@@ -42,7 +42,7 @@ class FrameMaker {
     refined.posterior_covariance = covarianceAt(posterior_, share);
     describeNorth(share, &refined);
     addDoubtAboutUp(options_.imu_axes, &refined.covariance);
-    refined.camera_corrections = cameraCorrections(problem_.window());
+    describeCameras(&refined);
     refined.gyroscope_axes = gyroscopeAxes(problem_.window());
     refined.accelerometer_axes = accelerometerAxes(problem_.window());
     describeMagnetometer(&refined);
@@ -131,6 +131,17 @@ class FrameMaker {
     return at;
   }
 
+  void describeCameras(FrameEstimate* refined) const {
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    refined->camera_corrections = cameraCorrections(problem_.window());
+    if (!refined->camera_corrections) return;
+    std::vector<PortCorrection>& ports = refined->camera_corrections->ports;
+    for (size_t i = 0; i < ports.size(); ++i) {
+      ports[i].sigma = reported_.empty() ? Vec3::Constant(kUnknown) : reported_.port_sigmas[i];
+      ports[i].is_dome = rig_.cameras[i].port && rig_.cameras[i].port->type == Port::Type::Dome;
+    }
+  }
+
   void describeMagnetometer(FrameEstimate* refined) const {
     const MagnetometerStates states(problem_.window());
     MagnetometerEstimate& magnetometer = refined->sensors.of<MagnetometerEstimate>();
@@ -168,6 +179,7 @@ class FrameMaker {
 
 BatchCovariances covariancesOf(const BatchProblem& problem, const BlockSkylineCholesky& inverse) {
   BatchCovariances covariances;
+  covariances.port_sigmas = problem.portSigmas(inverse);
   for (size_t k = 0; k < problem.states(); ++k) {
     covariances.states.push_back(problem.covarianceOf(k, inverse));
     covariances.azimuths.push_back(problem.azimuth(k, inverse));

@@ -6,10 +6,12 @@
 
 namespace lodeline {
 
-/// Covariances of all states of a problem, and of the field's azimuth with each; empty where not computed.
+/// Covariances of all states of a problem, and of the field's azimuth with each; claimed errors of its ports.
+/// Empty where not computed.
 struct BatchCovariances {
   std::vector<Eigen::Matrix<double, 15, 15>> states;
   std::vector<AzimuthCovariance> azimuths;
+  std::vector<Vec3> port_sigmas;
 
   bool empty() const { return states.empty(); }
 };

@@ -12,6 +12,10 @@ namespace lodeline {
 std::shared_ptr<const Camera> makeRefractiveCamera(const CameraCalibration& calibration,
                                                    std::shared_ptr<const Camera> in_air);
 
+/// A port after a change as in PortCorrection: normal exp([x, y, 0]) n and distance d + z of a plate, centre
+/// c + change of a dome.
+Port correctedPort(Port port, const Vec3& change);
+
 /// States what is wrong with the parameters of a port. Empty where nothing is.
 std::string portFault(const Port& port);
 

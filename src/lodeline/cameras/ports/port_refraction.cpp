@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lodeline/cameras/port_camera.h"
+#include "lodeline/geometry/so3.h"
 
 namespace lodeline {
 namespace {
@@ -46,6 +47,20 @@ std::optional<Vec3> refractedDirection(const Vec3& direction, const Vec3& normal
   if (!(cosine > 0.0) || !(refracted_squared > 0.0)) return std::nullopt;
   return (index_ratio * direction + (std::sqrt(refracted_squared) - index_ratio * cosine) * normal)
       .normalized();
+}
+
+Port correctedPort(Port port, const Vec3& change) {
+  if (port.type == Port::Type::Dome) {
+    port.centre_C += change;
+  } else {
+    port.normal_C = so3::exp(Vec3(change.x(), change.y(), 0.0)) * port.normal_C;
+    port.distance_m += change.z();
+  }
+  return port;
+}
+
+std::unique_ptr<const PortRefraction> makePortRefraction(const Port& port) {
+  return port.type == Port::Type::Flat ? makeFlatPort(port) : makeDomePort(port);
 }
 
 std::string portFault(const Port& port) {

@@ -33,6 +33,7 @@ class PortRefraction {
   virtual std::optional<ViewRay> through(const Vec3& direction_C) const = 0;
 };
 
+std::unique_ptr<const PortRefraction> makePortRefraction(const Port& port);
 std::unique_ptr<const PortRefraction> makeFlatPort(const Port& port);
 std::unique_ptr<const PortRefraction> makeDomePort(const Port& port);
 

@@ -9,13 +9,6 @@
 #include "lodeline/cameras/port_camera.h"
 
 namespace lodeline {
-namespace {
-
-std::unique_ptr<const PortRefraction> makePort(const Port& port) {
-  return port.type == Port::Type::Flat ? makeFlatPort(port) : makeDomePort(port);
-}
-
-}  // namespace
 
 std::shared_ptr<const Camera> makeRefractiveCamera(const CameraCalibration& calibration,
                                                    std::shared_ptr<const Camera> in_air) {
@@ -23,7 +16,7 @@ std::shared_ptr<const Camera> makeRefractiveCamera(const CameraCalibration& cali
 }
 
 RefractiveCamera::RefractiveCamera(const CameraCalibration& calibration, std::shared_ptr<const Camera> in_air)
-    : Camera(calibration), in_air_(std::move(in_air)), port_(makePort(*calibration.port)) {
+    : Camera(calibration), in_air_(std::move(in_air)), port_(makePortRefraction(*calibration.port)) {
   max_angle_rad_ = widestAngle_rad();
 }
 

@@ -86,7 +86,9 @@ void CameraCalibrationOptions::check() const {
       .notNegative("principal_point_sigma_px", principal_point_sigma_px)
       .notNegative("radial_sigma", radial_sigma)
       .notNegative("tangential_sigma", tangential_sigma)
-      .notNegative("port_tilt_sigma", port_tilt_sigma);
+      .notNegative("port_tilt_sigma", port_tilt_sigma)
+      .notNegative("port_normal_sigma_rad", port_normal_sigma_rad)
+      .notNegative("port_distance_sigma_m", port_distance_sigma_m);
 }
 
 void ImuAxesOptions::check() const {

@@ -6,6 +6,7 @@
 #include "lodeline/factors/calibrated_reprojection_factor.h"
 #include "lodeline/factors/inertial_factor.h"
 #include "lodeline/factors/intrinsics_factor.h"
+#include "lodeline/factors/ports/port_factor.h"
 
 namespace lodeline {
 
@@ -44,7 +45,8 @@ std::vector<const double*> linearizationPoints(const Window& window, const Landm
     if (observation.camera > 0) first.push_back(of_secondary);
     if (target.interpolated) first.push_back(window.find(target.interpolated->after)->firstPose());
   }
-  // Intrinsics are linearized at their present values.
+  // Ports and intrinsics are linearized at their present values.
+  if (states.portOf(observation.camera)) first.push_back(nullptr);
   if (!states.intrinsics.empty()) first.push_back(nullptr);
   return first;
 }
@@ -77,6 +79,8 @@ FactorBuilder::FactorBuilder(const Rig& rig, const EstimatorOptions& options)
   for (const CameraCalibration& camera : rig.cameras) {
     body_from_camera_.push_back(camera.body_from_camera);
     camera0_from_camera_.push_back(body_from_camera_.front().inverse() * camera.body_from_camera);
+    behind_port_.push_back(camera.port ? std::dynamic_pointer_cast<const RefractiveCamera>(makeCamera(camera))
+                                       : nullptr);
     centre_rows_.push_back(camera.hasRollingShutter() ? centreRow(camera) : 0.0);
   }
 }
@@ -157,6 +161,16 @@ Factor FactorBuilder::prior(const Prior& prior) const {
   return factor;
 }
 
+DirectionMeasurement FactorBuilder::presentMeasurement(const Window& window, const Observation& observation,
+                                                       const CameraStates& states) const {
+  const DirectionMeasurement at_image =
+      atTimeOfImage(observation, motionOf(*window.find(observation.frame), observation.camera), states);
+  const ParameterBlock* port = states.portOf(observation.camera);
+  if (!port) return at_image;
+  return throughPort(*behind_port_[static_cast<size_t>(observation.camera)], at_image,
+                     Vec3(port->value.data()));
+}
+
 Rigid3 FactorBuilder::worldFromCamera(const Window& window, const Frame& frame, int camera) const {
   const CameraStates states = cameraStates(window);
   if (!states) return frame.worldFromBody() * body_from_camera_[camera];
@@ -173,10 +187,9 @@ LandmarkFactors FactorBuilder::landmark(Window& window, FeatureTrack& track) con
   return states ? calibratedLandmark(window, track, states) : plainLandmark(window, track);
 }
 
-Factor FactorBuilder::calibratedFactor(Window& window, const Landmark& landmark, double* parameters,
-                                       const Observation& observation,
-                                       const DirectionMeasurement& measurement,
-                                       const CameraStates& states) const {
+Factor FactorBuilder::rayFactor(Window& window, const Landmark& landmark, double* parameters,
+                                const Observation& observation, const DirectionMeasurement& measurement,
+                                const CameraStates& states) const {
   Factor factor;
   Frame &host = *window.find(landmark.host), &target = *window.find(observation.frame);
   const bool in_host = observation.frame == landmark.host;
@@ -201,6 +214,22 @@ Factor FactorBuilder::calibratedFactor(Window& window, const Landmark& landmark,
                      states.time_offset->value.data()};
     if (secondary) factor.blocks.push_back(secondary->value.data());
     if (target.interpolated) hangOnNeighbours(window, target, &factor);
+  }
+  return factor;
+}
+
+Factor FactorBuilder::calibratedFactor(Window& window, const Landmark& landmark, double* parameters,
+                                       const Observation& observation,
+                                       const DirectionMeasurement& measurement,
+                                       const CameraStates& states) const {
+  Factor factor = rayFactor(window, landmark, parameters, observation, measurement, states);
+  if (ParameterBlock* port = states.portOf(observation.camera)) {
+    const auto factor_of = [&](const DirectionMeasurement& ray) {
+      return rayFactor(window, landmark, parameters, observation, ray, states).function;
+    };
+    factor.function = std::make_unique<PortFactor>(factor_of, measurement,
+                                                   behind_port_[static_cast<size_t>(observation.camera)]);
+    factor.blocks.push_back(port->value.data());
   }
   addIntrinsics(measurement, observation.camera, states, &factor);
   return factor;

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "lodeline/cameras/camera.h"
+#include "lodeline/cameras/ports/refractive_camera.h"
 #include "lodeline/estimator/options/options.h"
 #include "lodeline/estimator/state/camera_states.h"
 #include "lodeline/estimator/state/factor.h"
@@ -39,6 +39,10 @@ class FactorBuilder {
   /// Terms of all observations of a track that has a landmark.
   LandmarkFactors landmark(Window& window, FeatureTrack& track) const;
 
+  /// The measurement of an observation by the present line delay and port of its camera.
+  DirectionMeasurement presentMeasurement(const Window& window, const Observation& observation,
+                                          const CameraStates& states) const;
+
   /// Poses by the calibration files.
   const Rigid3& bodyFromCamera(int camera) const { return body_from_camera_[camera]; }
   /// Motion of a camera while its rows are read (factors/rolling_shutter.h).
@@ -53,6 +57,10 @@ class FactorBuilder {
   Rigid3 worldFromCamera(const Window& window, const Frame& frame, int camera) const;
 
  private:
+  /// Term of one observation by its ray, without intrinsics and port.
+  Factor rayFactor(Window& window, const Landmark& landmark, double* parameters,
+                   const Observation& observation, const DirectionMeasurement& measurement,
+                   const CameraStates& states) const;
   LandmarkFactors plainLandmark(Window& window, FeatureTrack& track) const;
   /// Term of one observation with another measurement than the recorded one.
   Factor calibratedFactor(Window& window, const Landmark& landmark, double* parameters,
@@ -65,7 +73,8 @@ class FactorBuilder {
 
   std::vector<Rigid3> body_from_camera_;
   std::vector<Rigid3> camera0_from_camera_;
-  std::vector<double> centre_rows_;  ///< of rolling shutters, 0 otherwise
+  std::vector<double> centre_rows_;                                   ///< of rolling shutters, 0 otherwise
+  std::vector<std::shared_ptr<const RefractiveCamera>> behind_port_;  ///< null without a port
   Vec3 gravity_W_;
   ImuAxesOptions imu_axes_;
   double placement_sigma_m_;

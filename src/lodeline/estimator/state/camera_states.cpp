@@ -20,6 +20,8 @@ std::string extrinsicsName(size_t camera) { return "cam" + std::to_string(camera
 
 std::string intrinsicsName(size_t camera) { return "cam" + std::to_string(camera) + ".lens"; }
 
+std::string portName(size_t camera) { return "cam" + std::to_string(camera) + ".port"; }
+
 void addState(Window& window, Prior& prior, const std::string& name, const Eigen::VectorXd& sigmas,
               const Vec3& start = Vec3::Zero()) {
   ParameterBlock state;
@@ -98,6 +100,17 @@ void addIntrinsicsStates(Window& window, Prior& prior, int cameras, const Camera
     addState(window, prior, intrinsicsName(static_cast<size_t>(camera)), intrinsicsSigmas(options));
 }
 
+void addPortStates(Window& window, Prior& prior, const Rig& rig, const CameraCalibrationOptions& options) {
+  if (!options.enabled || !options.intrinsics) return;
+  for (size_t camera = 0; camera < rig.cameras.size(); ++camera) {
+    const std::optional<Port>& port = rig.cameras[camera].port;
+    if (!port) continue;
+    Eigen::VectorXd sigmas = Vec3::Constant(options.port_distance_sigma_m);
+    if (port->type == Port::Type::Flat) sigmas.head<2>().setConstant(options.port_normal_sigma_rad);
+    if (!sigmas.isZero(0.0)) addState(window, prior, portName(camera), sigmas);
+  }
+}
+
 CameraStates cameraStates(const Window& window) {
   CameraStates states;
   states.camera0 = window.findGlobal(extrinsicsName(0));
@@ -108,6 +121,10 @@ CameraStates cameraStates(const Window& window) {
     states.secondary.push_back(secondary);
   while (ParameterBlock* lens = window.findGlobal(intrinsicsName(states.intrinsics.size())))
     states.intrinsics.push_back(lens);
+  for (size_t camera = 0; camera < states.intrinsics.size(); ++camera)
+    states.ports.push_back(window.findGlobal(portName(camera)));
+  if (std::all_of(states.ports.begin(), states.ports.end(), [](const auto* port) { return !port; }))
+    states.ports.clear();
   return states;
 }
 
@@ -139,6 +156,8 @@ std::optional<CameraCorrections> cameraCorrections(const Window& window) {
   }
   for (const ParameterBlock* lens : states.intrinsics)
     corrections.intrinsics.emplace_back(Eigen::Map<const IntrinsicsCorrection>(lens->value.data()));
+  for (const ParameterBlock* port : states.ports)
+    corrections.ports.push_back({port ? Vec3(port->value.data()) : Vec3::Zero()});
   corrections.are_files_held = !states.intrinsics.empty() && !states.intrinsics.front()->priors.empty();
   return corrections;
 }

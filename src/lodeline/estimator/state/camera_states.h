@@ -19,8 +19,13 @@ struct CameraStates {
   ParameterBlock* shutter = nullptr;       ///< null where all shutters are global (factors/rolling_shutter.h)
   std::vector<ParameterBlock*> secondary;  ///< of camera 1, 2, ...
   std::vector<ParameterBlock*> intrinsics;  ///< of every camera; empty where they are not estimated
+  /// Of every camera, null without a port (factors/ports/port_factor.h); empty where no port is estimated.
+  std::vector<ParameterBlock*> ports;
 
   explicit operator bool() const { return camera0 != nullptr; }
+  ParameterBlock* portOf(int camera) const {
+    return ports.empty() ? nullptr : ports[static_cast<size_t>(camera)];
+  }
   double timeOffset_s() const { return time_offset ? time_offset->value[0] : 0.0; }
 };
 
@@ -32,6 +37,9 @@ void addCameraStates(Window& window, Prior& prior, int cameras, const CameraCali
 void addShutterState(Window& window, Prior& prior, const Rig& rig, const CameraCalibrationOptions& options);
 /// Adds the intrinsics of the cameras, where these are to be estimated.
 void addIntrinsicsStates(Window& window, Prior& prior, int cameras, const CameraCalibrationOptions& options);
+/// Adds the ports of the rig's cameras, where the intrinsics are estimated. For the batch solution alone: the
+/// terms of the window (visual/reprojection_system.h) have constant ports.
+void addPortStates(Window& window, Prior& prior, const Rig& rig, const CameraCalibrationOptions& options);
 
 CameraStates cameraStates(const Window& window);
 

@@ -43,47 +43,6 @@ nlohmann::ordered_json toJson(const RunDescription& run) {
           {"rig", rigJson(run)}};
 }
 
-std::string describe(const CameraCorrections& corrections) {
-  std::string text = fmt::format("images {:+.1f} ms", 1e3 * corrections.time_offset_s);
-  for (const double line_delay_s : corrections.line_delays_s)
-    text += fmt::format(", {:.2f} us a row", 1e6 * line_delay_s);
-  for (size_t i = 0; i < corrections.extrinsics.size(); ++i) {
-    const auto& extrinsics = corrections.extrinsics[i];
-    text += fmt::format(", camera {}{} {:.2f} deg {:.1f} mm", i, i > 0 ? " to camera 0" : "",
-                        extrinsics.head<3>().norm() * 180.0 / M_PI, 1e3 * extrinsics.tail<3>().norm());
-  }
-  if (corrections.are_files_held)
-    return text + (corrections.extrinsics.size() > 1
-                       ? " off the files; lenses and camera 1's turn as they say"
-                       : " off the files; lens as they say");
-  for (size_t i = 0; i < corrections.intrinsics.size(); ++i) {
-    const auto& lens = corrections.intrinsics[i];
-    text += fmt::format(", lens {} focal length {:+.2f} % {:+.2f} %, centre {:+.1f} {:+.1f} px", i,
-                        100.0 * lens[0], 100.0 * lens[1], lens[2], lens[3]);
-  }
-  return text + " off the files";
-}
-
-nlohmann::ordered_json toJson(const CameraCorrections& corrections) {
-  nlohmann::ordered_json json;
-  json["time_offset_s"] = corrections.time_offset_s;
-  json["are_files_held"] = corrections.are_files_held;
-  if (!corrections.line_delays_s.empty()) json["line_delays_s"] = corrections.line_delays_s;
-  for (const auto& extrinsics : corrections.extrinsics) {
-    json["cameras"].push_back({{"rotation_rad", {extrinsics[0], extrinsics[1], extrinsics[2]}},
-                               {"position_m", {extrinsics[3], extrinsics[4], extrinsics[5]}}});
-  }
-  for (size_t i = 0; i < corrections.intrinsics.size(); ++i) {
-    const auto& lens = corrections.intrinsics[i];
-    json["cameras"][i]["focal_length"] = {lens[0], lens[1]};
-    json["cameras"][i]["principal_point_px"] = {lens[2], lens[3]};
-    json["cameras"][i]["radial"] = {lens[4], lens[5]};
-    json["cameras"][i]["tangential"] = {lens[6], lens[7]};
-    json["cameras"][i]["port_tilt"] = {lens[8], lens[9]};
-  }
-  return json;
-}
-
 std::string describe(const char* sensor, const SensorAxes& axes) {
   const Mat3 errors = axes.reshaped(3, 3);
   const Mat3 aside = errors - Mat3(errors.diagonal().asDiagonal());

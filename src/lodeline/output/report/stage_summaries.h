@@ -7,6 +7,9 @@
 
 namespace lodeline {
 
+/// Calibration states of the cameras, in words and for run.json.
+std::string describe(const CameraCorrections& corrections);
+nlohmann::ordered_json toJson(const CameraCorrections& corrections);
 /// Summaries of the stages after the estimator, in words and for run.json.
 std::string describe(const RefinementSummary& refined);
 nlohmann::ordered_json toJson(const RefinementSummary& refined);

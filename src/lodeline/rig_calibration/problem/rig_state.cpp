@@ -1,5 +1,6 @@
 #include "lodeline/rig_calibration/problem/rig_state.h"
 
+#include "lodeline/cameras/port_camera.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/geometry/so3.h"
 
@@ -21,13 +22,8 @@ CameraCalibration CameraState::calibration() const {
   c.distortion.assign(lens.begin() + 4, lens.end());
   c.body_from_camera = poseFromBlock(body_from_camera.data());
   if (!c.port) return c;
+  c.port = correctedPort(*c.port, Vec3(port.data()));
   c.port->index_water += port[3];
-  if (c.port->type == Port::Type::Flat) {
-    c.port->normal_C = so3::exp(Vec3(port[0], port[1], 0.0)) * c.port->normal_C;
-    c.port->distance_m += port[2];
-  } else {
-    c.port->centre_C += Vec3(port[0], port[1], port[2]);
-  }
   return c;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "lodeline/cameras/port_camera.h"
 #include "lodeline/factors/calibrated_reprojection_factor.h"
 #include "lodeline/factors/intrinsics_factor.h"
 #include "lodeline/io/images/image_loader.h"
@@ -62,8 +63,11 @@ std::vector<CameraCalibration> camerasOfRun(const Rig& rig, const RunFolder& run
   std::vector<CameraCalibration> cameras = rig.cameras;
   correct(run.camera_corrections, &cameras);
   if (run.intrinsics_corrections.size() != cameras.size()) return cameras;
-  for (size_t i = 0; i < cameras.size(); ++i)
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    std::optional<Port>& port = cameras[i].port;
+    if (port && i < run.port_corrections.size()) port = correctedPort(*port, run.port_corrections[i].change);
     cameras[i] = correctedIntrinsics(cameras[i], run.intrinsics_corrections[i].data());
+  }
   return cameras;
 }
 

@@ -35,6 +35,7 @@ RunFolder runOf(const std::string& name, const std::vector<FrameEstimate>& estim
   if (last->camera_corrections) {
     run.camera_corrections = last->camera_corrections->extrinsics;
     run.intrinsics_corrections = last->camera_corrections->intrinsics;
+    run.port_corrections = last->camera_corrections->ports;
   }
   return run;
 }

@@ -118,14 +118,22 @@ void readStartDepth(const nlohmann::json& json, RunFolder* run) {
 }
 
 void readCameraCorrections(const nlohmann::json& json, RunFolder* run) {
-  if (!json.contains("camera_corrections")) return;
-  for (const nlohmann::json& camera : json["camera_corrections"].at("cameras")) {
+  // The batch solution has its own where ports are states.
+  const nlohmann::json refined = json.value("refinement", nlohmann::json::object());
+  const nlohmann::json& from = refined.contains("camera_corrections") ? refined : json;
+  if (!from.contains("camera_corrections")) return;
+  for (const nlohmann::json& camera : from["camera_corrections"].at("cameras")) {
     Eigen::Matrix<double, 6, 1> correction;
     for (size_t i = 0; i < 3; ++i) {
       correction[static_cast<Eigen::Index>(i)] = camera.at("rotation_rad").at(i).get<double>();
       correction[static_cast<Eigen::Index>(i) + 3] = camera.at("position_m").at(i).get<double>();
     }
     run->camera_corrections.push_back(correction);
+    if (camera.contains("port_change")) {
+      PortCorrection& port = run->port_corrections.emplace_back();
+      for (size_t i = 0; i < 3; ++i)
+        port.change[static_cast<Eigen::Index>(i)] = camera["port_change"].at(i).get<double>();
+    }
     if (!camera.contains("focal_length")) continue;
     IntrinsicsCorrection intrinsics = IntrinsicsCorrection::Zero();
     for (size_t i = 0; i < 2; ++i) {

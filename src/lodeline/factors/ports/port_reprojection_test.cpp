@@ -4,7 +4,9 @@
 
 #include <random>
 
+#include "lodeline/cameras/port_camera.h"
 #include "lodeline/factors/calibrated_reprojection_factor.h"
+#include "lodeline/factors/ports/port_factor.h"
 #include "lodeline/factors/reprojection_scene.h"
 
 namespace lodeline {
@@ -160,6 +162,129 @@ TEST_P(PortReprojection, APointBehindTheCameraIsAConstantOutlier) {
     ASSERT_LT(point_C.z(), 0.0);
     EXPECT_GT(evaluate(factor, blocks).norm(), 1e3);
     EXPECT_TRUE(evaluate(factor, blocks).allFinite());
+  }
+}
+
+/// Scenes whose camera has another port than its file states, and the change from the file.
+struct MovedPortScene : PortScene {
+  std::shared_ptr<const RefractiveCamera> by_file;
+  Vec3 change;
+
+  MovedPortScene(const Port& file, const Vec3& change, double range_m)
+      : PortScene(correctedPort(file, change), range_m), change(change) {
+    CameraCalibration stated = camera->calibration();
+    stated.port = file;
+    by_file = std::dynamic_pointer_cast<const RefractiveCamera>(makeCamera(stated));
+  }
+  /// The measurement of a point by the file.
+  DirectionMeasurement stated(const Vec3& point_C, const Vec2& error_px, double sigma_px) const {
+    const ViewRay ray = by_file->viewRay(*camera->project(point_C) + error_px)->fromNearestPoint();
+    return DirectionMeasurement::fromRay(*by_file, ray, sigma_px);
+  }
+  DirectionMeasurement inTarget(const Vec2& error_px = Vec2::Zero(), double sigma_px = 0.7) const {
+    return stated(pointIn(world_from_target, bodyFromCamera1()), error_px, sigma_px);
+  }
+  PortFactor calibratedPort(const Vec2& error_px = Vec2::Zero(), double sigma_px = 0.7) const {
+    const CameraPlacement placement{body_from_camera0, camera0_from_camera1};
+    const auto factor_of = [&](const DirectionMeasurement& ray) -> std::unique_ptr<ceres::CostFunction> {
+      return std::make_unique<CalibratedReprojectionFactor>(ray, base(), placement, ImageMotion(),
+                                                            ImageMotion());
+    };
+    return {factor_of, inTarget(error_px, sigma_px), by_file};
+  }
+  PortFactor stereoPort(const Vec2& error_px = Vec2::Zero()) const {
+    const auto factor_of = [&](const DirectionMeasurement& ray) -> std::unique_ptr<ceres::CostFunction> {
+      return std::make_unique<CalibratedStereoFactor>(ray, base(), camera0_from_camera1);
+    };
+    return {factor_of, stated(pointIn(world_from_host, bodyFromCamera1()), error_px, 0.7), by_file};
+  }
+  std::vector<Eigen::VectorXd> withPort() const {
+    auto blocks = calibratedBlocks();
+    blocks.push_back(change);
+    return blocks;
+  }
+};
+
+class MovedPort : public testing::TestWithParam<double> {
+ protected:
+  std::vector<MovedPortScene> scenes() const {
+    return {{aslantPlate(), Vec3(0.009, -0.012, 0.003), GetParam()},
+            {decentredDome(), Vec3(-0.002, 0.003, 0.0015), GetParam()},
+            {aslantPlate(), Vec3::Zero(), GetParam()}};
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Distances, MovedPort, testing::Values(0.4, 1.0, 2.5, 30.0));
+
+TEST_P(MovedPort, IsZeroAtTheTruePortAlone) {
+  for (const MovedPortScene& scene : scenes()) {
+    EXPECT_LT(evaluate(scene.calibratedPort(), scene.withPort()).norm(), 1e-6);
+    EXPECT_LT(evaluate(scene.stereoPort(), {scene.landmark(), Eigen::VectorXd::Zero(6), scene.change}).norm(),
+              1e-6);
+    if (scene.change.isZero()) continue;
+    auto by_file = scene.withPort();
+    by_file.back().setZero();
+    EXPECT_GT(evaluate(scene.calibratedPort(), by_file).norm(), 0.5);
+  }
+}
+
+TEST_P(MovedPort, JacobiansMatchNumericDifferentiation) {
+  const Vec2 error_px(1.2, -0.8);
+  for (const MovedPortScene& scene : scenes()) {
+    expectJacobiansMatch(scene.calibratedPort(error_px), scene.withPort());
+    expectJacobiansMatch(scene.stereoPort(error_px),
+                         {scene.landmark(), Eigen::VectorXd::Zero(6), scene.change});
+  }
+}
+
+// The pixel error over sigma, exactly: the weight of a ray is that of the nominal distance.
+TEST_P(MovedPort, IsThePixelErrorOverItsSigma) {
+  const Vec2 error_px(1.5, -0.7);
+  for (const MovedPortScene& scene : scenes()) {
+    const Vec2 residual = evaluate(scene.calibratedPort(error_px, 0.5), scene.withPort());
+    EXPECT_LT((residual + error_px / 0.5).norm(), 1e-6);
+  }
+}
+
+TEST_P(MovedPort, IsInvariantUnderAnyMotionOfTheWorld) {
+  for (MovedPortScene scene : scenes()) {
+    const auto factor = scene.calibratedPort(Vec2(2.0, -1.0));
+    const Vec2 before = evaluate(factor, scene.withPort());
+    const Rigid3 moved(so3::exp(Vec3(0.5, -2.0, 0.7)), Vec3(30, -20, 10));
+    scene.world_from_host = moved * scene.world_from_host;
+    scene.world_from_target = moved * scene.world_from_target;
+    EXPECT_LT((evaluate(factor, scene.withPort()) - before).norm(), 1e-8);
+  }
+}
+
+TEST_P(MovedPort, AgreesWithTheRayThroughThePort) {
+  const Vec2 error_px(0.4, -0.3);
+  for (const MovedPortScene& scene : scenes()) {
+    const CalibratedReprojectionFactor ray(
+        throughPort(*scene.by_file, scene.inTarget(error_px), scene.change), scene.base(),
+        {scene.body_from_camera0, scene.camera0_from_camera1}, {}, {});
+    const Vec2 exact = evaluate(scene.calibratedPort(error_px), scene.withPort());
+    EXPECT_LT((evaluate(ray, scene.calibratedBlocks()) - exact).norm(), 0.05 * exact.norm());
+  }
+}
+
+TEST_P(MovedPort, WhatHasNoPixelIsAConstantOutlier) {
+  for (const MovedPortScene& scene : scenes()) {
+    const auto factor = scene.calibratedPort();
+    auto behind = scene.withPort();
+    behind[1] = poseVector(scene.world_from_target * Rigid3(so3::exp(Vec3(0.0, 0.0, 3.1)), Vec3::Zero()));
+    auto impossible = scene.withPort();
+    impossible.back().setConstant(-0.5);  // half a metre behind the lens
+    for (const auto& blocks : {behind, impossible}) {
+      std::vector<const double*> at;
+      for (const auto& block : blocks) at.push_back(block.data());
+      Eigen::Matrix<double, 2, kPortChangeSize, Eigen::RowMajor> by_port;
+      std::vector<double*> jacobians(blocks.size(), nullptr);
+      jacobians.back() = by_port.data();
+      Vec2 residual;
+      ASSERT_TRUE(factor.Evaluate(at.data(), residual.data(), jacobians.data()));
+      EXPECT_GT(residual.norm(), 1e3);
+      EXPECT_TRUE(by_port.isZero());
+    }
   }
 }
 
