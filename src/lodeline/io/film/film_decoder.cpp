@@ -148,7 +148,7 @@ av::Frame FilmDecoder::State::decodeUpTo(Duration time) {
 }
 
 bool FilmDecoder::State::needsSeek(Duration time) const {
-  if (ended || (position && *position >= time)) return true;
+  if (position && *position >= time) return true;
   const Duration reached = position.value_or(Duration());
   if ((time - reached).seconds() > kFarAhead_s) return true;
   return indexAt(time, true) - std::max(0, indexAt(reached, false)) > kMostBeforeKey;
@@ -156,22 +156,21 @@ bool FilmDecoder::State::needsSeek(Duration time) const {
 
 av::Frame FilmDecoder::State::find(Duration time) {
   if (av::Frame frame = takeKept(time)) return frame;
-  if (needsSeek(time)) seek(time);
+  const bool is_sought = needsSeek(time);
+  if (is_sought) seek(time);
   av::Frame frame = decodeUpTo(time);
-  const auto isPast = [&] { return !frame && position && *position > time; };
-  // The index led to a key image that is shown after the image: once more from the key image before, and from
-  // the start of the film.
-  const int key = indexAt(time, true);
-  if (isPast() && key > 0) {
+  const bool is_past = position ? *position > time : is_sought;
+  if (frame || !is_past) return frame;
+  // The index led to a key image that is shown after the image, or to the end: once more from the key image
+  // before, and from the start of the film.
+  if (const int key = indexAt(time, true); key > 0) {
     const AVIndexEntry* entry = avformat_index_get_entry(input->streams[track], key - 1);
     seek(av::duration(entry->timestamp, unit));
     frame = decodeUpTo(time);
   }
-  if (isPast()) {
-    seek(Duration::fromSeconds(-1e6));
-    frame = decodeUpTo(time);
-  }
-  return frame;
+  if (frame) return frame;
+  seek(Duration::fromSeconds(-1e6));
+  return decodeUpTo(time);
 }
 
 LoadedImage FilmDecoder::State::imageOf(const av::Frame& frame, Duration time) const {

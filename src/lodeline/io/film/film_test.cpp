@@ -152,6 +152,18 @@ TEST_F(FilmTest, DecodesAnImageOnceThatIsLoadedTwice) {
   EXPECT_EQ(decoder.decoded(), 30);
 }
 
+TEST_F(FilmTest, DecodesTheLastImagesOnceWhereTheyAreReordered) {
+  TestFilm film;
+  film.reordered = 2;
+  const std::filesystem::path file = write(film);
+  FilmDecoder decoder(file, 0, {});
+  FilmFrameTimes times(file, 0);
+  int number = 0;
+  while (const std::optional<Duration> time = times.next())
+    EXPECT_EQ(numberOf(decoder.load(*time)), number++);
+  EXPECT_EQ(decoder.decoded(), 30);
+}
+
 TEST_F(FilmTest, LeavesOutWhatIsBeforeAKeyImage) {
   for (const int reordered : {0, 2}) {
     TestFilm film;
