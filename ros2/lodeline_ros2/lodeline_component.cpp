@@ -121,8 +121,16 @@ void LodelineComponent::subscribe(size_t place, const std::string& type) {
   const auto receive = [this, place, type](std::shared_ptr<const rclcpp::SerializedMessage> message) {
     session_->receive(place, type, bytesOf(*message));
   };
-  subscriptions_.push_back(create_generic_subscription(
-      sensor_topics_[place], ros2Type(type), sensorQos(session_->subscriptions()[place]), receive, options));
+  const auto create = [&] {
+    return create_generic_subscription(sensor_topics_[place], ros2Type(type),
+                                       sensorQos(session_->subscriptions()[place]), receive, options);
+  };
+  try {
+    subscriptions_.push_back(create());
+  } catch (const rclcpp::UnsupportedEventTypeException&) {  // this middleware counts no lost messages
+    options.event_callbacks.message_lost_callback = nullptr;
+    subscriptions_.push_back(create());
+  }
   subscribed_.insert(place);
 }
 

@@ -34,6 +34,7 @@ FilmDecoder::FilmDecoder(const std::filesystem::path& file, int, cv::Size) { ref
 FilmDecoder::~FilmDecoder() = default;
 void FilmDecoder::announce(Duration) {}
 LoadedImage FilmDecoder::load(Duration) { return {}; }
+int64_t FilmDecoder::decoded() const { return 0; }
 
 struct MessageDecoder::State {};
 MessageDecoder::MessageDecoder(const std::string& codec) { refuse(codec); }

@@ -17,8 +17,11 @@ namespace lodeline {
 namespace {
 
 constexpr unsigned kMostThreads = 4;
-/// Ahead of the decoder by more than this, a seek to a key frame costs less than decoding all images between.
+/// Ahead of the decoder by more than this, a seek to a key image costs less than decoding all images between.
+/// For files without an index of their images.
 constexpr double kFarAhead_s = 10.0;
+/// The same by the index: images before the key image, more than the codec works on at a time.
+constexpr int kMostBeforeKey = 16;
 constexpr size_t kMostKept = 8;
 
 }  // namespace
@@ -29,8 +32,12 @@ struct FilmDecoder::State {
     Duration time;
     av::Frame frame;
   };
+  struct Loaded {
+    Duration time;
+    LoadedImage image;
+  };
 
-  std::mutex mutex;
+  mutable std::mutex mutex;
   std::string name;
   cv::Size size;
   av::Input input;
@@ -42,12 +49,19 @@ struct FilmDecoder::State {
   bool ended = false;                ///< all packets were given to the codec
   std::set<int64_t> announced_ns;
   std::deque<Kept> kept;
+  std::optional<Loaded> last;
+  int64_t decoded = 0;
 
   void open(const std::filesystem::path& file);
   void seek(Duration time);
   av::Frame next();
   av::Frame decodeUpTo(Duration time);
   av::Frame takeKept(Duration time);
+  int64_t ticks(Duration time) const { return av_rescale_q(time.nanoseconds(), av::kNanoseconds, unit); }
+  int indexAt(Duration time, bool only_keys) const;
+  bool needsSeek(Duration time) const;
+  av::Frame find(Duration time);
+  LoadedImage imageOf(const av::Frame& frame, Duration time) const;
   Duration timeOf(const AVFrame& frame) const { return av::duration(frame.best_effort_timestamp, unit); }
 };
 
@@ -71,9 +85,16 @@ void FilmDecoder::State::open(const std::filesystem::path& file) {
   }
 }
 
+/// Number in the index of the last image that is decoded at `time` or before, of all or of key images. The
+/// times of an index are those of decoding: an image is shown at its time or later. -1 without an index.
+int FilmDecoder::State::indexAt(Duration time, bool only_keys) const {
+  const int flags = AVSEEK_FLAG_BACKWARD | (only_keys ? 0 : AVSEEK_FLAG_ANY);
+  return av_index_search_timestamp(input->streams[track], ticks(time), flags);
+}
+
 void FilmDecoder::State::seek(Duration time) {
-  const int64_t ticks = av_rescale_q(time.nanoseconds(), av::kNanoseconds, unit);
-  if (avformat_seek_file(input.get(), track, INT64_MIN, ticks, ticks, 0) < 0) {
+  const int64_t latest = ticks(time);
+  if (avformat_seek_file(input.get(), track, INT64_MIN, latest, latest, 0) < 0) {
     av_seek_frame(input.get(), track, INT64_MIN, AVSEEK_FLAG_BACKWARD);
   }
   avcodec_flush_buffers(codec.get());
@@ -86,6 +107,7 @@ av::Frame FilmDecoder::State::next() {
   while (true) {
     const int received = avcodec_receive_frame(codec.get(), frame.get());
     if (received == 0) {
+      ++decoded;
       if (frame->best_effort_timestamp == AV_NOPTS_VALUE) continue;
       return frame;
     }
@@ -125,6 +147,43 @@ av::Frame FilmDecoder::State::decodeUpTo(Duration time) {
   return nullptr;
 }
 
+bool FilmDecoder::State::needsSeek(Duration time) const {
+  if (position && *position >= time) return true;
+  const Duration reached = position.value_or(Duration());
+  if ((time - reached).seconds() > kFarAhead_s) return true;
+  return indexAt(time, true) - std::max(0, indexAt(reached, false)) > kMostBeforeKey;
+}
+
+av::Frame FilmDecoder::State::find(Duration time) {
+  if (av::Frame frame = takeKept(time)) return frame;
+  const bool is_sought = needsSeek(time);
+  if (is_sought) seek(time);
+  av::Frame frame = decodeUpTo(time);
+  const bool is_past = position ? *position > time : is_sought;
+  if (frame || !is_past) return frame;
+  // The index led to a key image that is shown after the image, or to the end: once more from the key image
+  // before, and from the start of the film.
+  if (const int key = indexAt(time, true); key > 0) {
+    const AVIndexEntry* entry = avformat_index_get_entry(input->streams[track], key - 1);
+    seek(av::duration(entry->timestamp, unit));
+    frame = decodeUpTo(time);
+  }
+  if (frame) return frame;
+  seek(Duration::fromSeconds(-1e6));
+  return decodeUpTo(time);
+}
+
+LoadedImage FilmDecoder::State::imageOf(const av::Frame& frame, Duration time) const {
+  const std::string where = fmt::format("{} at {:.3f} s", name, time.seconds());
+  if (!frame) return {cv::Mat(), where + ": the image cannot be decoded"};
+  if (frame->decode_error_flags != 0 || (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0) {
+    return {cv::Mat(), where + ": the image is damaged"};
+  }
+  cv::Mat grey = av::greyFrame(*frame, size);
+  if (grey.empty()) return {cv::Mat(), where + ": its pixel format cannot be converted to grey"};
+  return {grey, ""};
+}
+
 FilmDecoder::FilmDecoder(const std::filesystem::path& file, int track, cv::Size size)
     : state_(std::make_unique<State>()) {
   state_->track = track;
@@ -143,31 +202,22 @@ LoadedImage FilmDecoder::load(Duration time) {
   av::Frame frame;
   {
     const std::lock_guard lock(state_->mutex);
+    if (state_->last && state_->last->time == time) return state_->last->image;
     // What is announced before this image by more than the look-ahead will not be loaded any more.
     const int64_t long_past_ns = (time - Duration::fromSeconds(kFarAhead_s)).nanoseconds();
     state_->announced_ns.erase(state_->announced_ns.begin(), state_->announced_ns.lower_bound(long_past_ns));
-    frame = state_->takeKept(time);
-    if (!frame) {
-      const bool is_behind = state_->position && *state_->position >= time;
-      const Duration reached = state_->position.value_or(Duration());
-      if (is_behind || state_->ended || (time - reached).seconds() > kFarAhead_s) state_->seek(time);
-      frame = state_->decodeUpTo(time);
-      if (!frame && state_->position && *state_->position > time) {
-        // The index led behind the image: once more from the start of the film.
-        state_->seek(Duration::fromSeconds(-1e6));
-        frame = state_->decodeUpTo(time);
-      }
-    }
+    frame = state_->find(time);
     state_->announced_ns.erase(time.nanoseconds());
   }
-  const std::string where = fmt::format("{} at {:.3f} s", state_->name, time.seconds());
-  if (!frame) return {cv::Mat(), where + ": the image cannot be decoded"};
-  if (frame->decode_error_flags != 0 || (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0) {
-    return {cv::Mat(), where + ": the image is damaged"};
-  }
-  cv::Mat grey = av::greyFrame(*frame, state_->size);
-  if (grey.empty()) return {cv::Mat(), where + ": its pixel format cannot be converted to grey"};
-  return {grey, ""};
+  LoadedImage image = state_->imageOf(frame, time);
+  const std::lock_guard lock(state_->mutex);
+  state_->last = {time, image};
+  return image;
+}
+
+int64_t FilmDecoder::decoded() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->decoded;
 }
 
 }  // namespace lodeline

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <opencv2/core/mat.hpp>
@@ -12,7 +13,8 @@ namespace lodeline {
 
 /// Decodes the images of a film's track to 8-bit grey: the luminance as the codec stores it, scaled down to
 /// `size` where that is given. Images are requested by their times (FilmFrameTimes). Requests in rising order
-/// decode each image once; others seek. Memory holds the codec's images and a few that were decoded on the
+/// decode each image once, or leave out those before a key image; others seek. A second request for the last
+/// image costs nothing. Memory holds the codec's images, the last image, and a few that were decoded on the
 /// way to a later one. All functions may be called from several threads.
 class FilmDecoder {
  public:
@@ -25,6 +27,8 @@ class FilmDecoder {
   void announce(Duration time);
   /// The image at exactly that time.
   LoadedImage load(Duration time);
+  /// Images that the codec has delivered so far, with those on the way to others.
+  int64_t decoded() const;
 
  private:
   struct State;

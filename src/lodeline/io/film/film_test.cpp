@@ -140,6 +140,48 @@ TEST_F(FilmTest, DecodesInAnyOrder) {
   }
 }
 
+TEST_F(FilmTest, DecodesAnImageOnceThatIsLoadedTwice) {
+  const std::filesystem::path file = write(TestFilm());
+  FilmDecoder decoder(file, 0, {});
+  FilmFrameTimes times(file, 0);
+  int number = 0;
+  while (const std::optional<Duration> time = times.next()) {
+    for (int repeat = 0; repeat < 3; ++repeat) EXPECT_EQ(numberOf(decoder.load(*time)), number);
+    ++number;
+  }
+  EXPECT_EQ(decoder.decoded(), 30);
+}
+
+TEST_F(FilmTest, DecodesTheLastImagesOnceWhereTheyAreReordered) {
+  TestFilm film;
+  film.reordered = 2;
+  const std::filesystem::path file = write(film);
+  FilmDecoder decoder(file, 0, {});
+  FilmFrameTimes times(file, 0);
+  int number = 0;
+  while (const std::optional<Duration> time = times.next())
+    EXPECT_EQ(numberOf(decoder.load(*time)), number++);
+  EXPECT_EQ(decoder.decoded(), 30);
+}
+
+TEST_F(FilmTest, LeavesOutWhatIsBeforeAKeyImage) {
+  for (const int reordered : {0, 2}) {
+    TestFilm film;
+    film.images = 200;
+    film.reordered = reordered;
+    const std::filesystem::path file = write(film);
+    std::vector<Duration> times;
+    FilmFrameTimes reader(file, 0);
+    while (const std::optional<Duration> time = reader.next()) times.push_back(*time);
+    FilmDecoder decoder(file, 0, {});
+    for (const int number : {5, 60, 61, 63, 119, 120, 121, 193}) {
+      EXPECT_EQ(numberOf(decoder.load(times[static_cast<size_t>(number)])), number % 40) << number;
+    }
+    // Of the longest group of images, at most, for each of the four jumps, and the images in between.
+    EXPECT_LE(decoder.decoded(), 4 * 13 + 12);
+  }
+}
+
 TEST_F(FilmTest, DecodesForSeveralThreads) {
   TestFilm film;
   film.images = 40;
