@@ -98,6 +98,10 @@ void calibrateCameras(const CamerasArguments& arguments) {
   request.record.progress = [&](size_t images) {
     progress.show(source->shareRead(), fmt::format("{} images", images));
   };
+  request.options.progress = [&](double share) {
+    progress.begin("solving");
+    progress.show(share);
+  };
   CameraCalibrationOutcome outcome;
   try {
     outcome = calibrateCameras(source.get(), request, arguments.output, &diagnostics);

@@ -21,6 +21,7 @@
 #include "lodeline/pipeline/open_recording.h"
 #include "lodeline/util/files/output_file.h"
 #include "lodeline/util/json_text.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 namespace {
@@ -113,12 +114,18 @@ void calibrate(const CalibrateArguments& arguments) {
     CalibrationOptions options;
     options.site_field_ENU = site_field_ENU;
     if (!arguments.old.empty()) options.old = readCalibrationFile(arguments.old);
+    Progress progress("reading", arguments.verbosity.quiet);
+    RecordOptions reading = recordOptions(arguments);
+    reading.progress = progress.function();
     const MagnetometerRecord record =
-        readMagnetometerRecord(arguments.data, arguments.bag, recordOptions(arguments), &diagnostics);
+        readMagnetometerRecord(arguments.data, arguments.bag, reading, &diagnostics);
     MagnetometerCalibrationResult result;
     try {
+      progress.begin("calibration");
       result = calibrateMagnetometer(record, options, &diagnostics);
+      progress.end();
     } catch (const EstimationError&) {
+      progress.end();
       printFindings(diagnostics, arguments.verbosity);
       throw;
     }

@@ -9,6 +9,7 @@
 #include "lodeline/output/report/findings.h"
 #include "lodeline/util/files/output_file.h"
 #include "lodeline/util/json_text.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 
@@ -25,10 +26,16 @@ void calibrateCurrentsFromTest(const CalibrateCurrentsArguments& arguments) {
   const std::unique_ptr<RecordedSource> source =
       openRecording(arguments.data, options, arguments.bag, &diagnostics);
   CurrentCalibrationResult result;
+  Progress progress("reading", arguments.verbosity.quiet);
+  RecordOptions reading = arguments.record;
+  reading.progress = progress.function();
   try {
-    const StillTest test = readStillTest(*source, arguments.data, true, arguments.record, iron, &diagnostics);
+    const StillTest test = readStillTest(*source, arguments.data, true, reading, iron, &diagnostics);
+    progress.begin("calibration");
     result = calibrateCurrents(test, earlier, &diagnostics);
+    progress.end();
   } catch (const EstimationError&) {
+    progress.end();
     printFindings(diagnostics, arguments.verbosity);
     throw;
   }

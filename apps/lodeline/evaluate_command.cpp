@@ -22,6 +22,7 @@
 #include "lodeline/trajectory.h"
 #include "lodeline/util/files/output_file.h"
 #include "lodeline/util/json_text.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 namespace {
@@ -117,19 +118,26 @@ void refuseColmapOptions(const Arguments& arguments, const TrajectoryReadOptions
 }
 
 void writePage(const Arguments& arguments, const std::vector<NamedEvaluation>& estimates,
-               Diagnostics* diagnostics) {
+               const ShareDone& progress, Diagnostics* diagnostics) {
   std::vector<PageEstimate> shown;
   for (size_t i = 0; i < estimates.size(); ++i)
     shown.push_back({arguments.trajectories[i], estimates[i].name, &estimates[i].evaluation.estimate});
   const ReportReference reference = {arguments.reference(), alignmentTypeFromString(arguments.align)};
-  writeOutput(arguments.html, evaluationPage(shown, reference, diagnostics));
+  writeOutput(arguments.html, evaluationPage(shown, reference, progress, diagnostics));
 }
 
 void writeAllPlots(const std::vector<NamedEvaluation>& estimates, const std::filesystem::path& folder,
-                   Diagnostics* diagnostics) {
-  if (estimates.size() == 1) return writePlots(estimates.front().evaluation, folder, *diagnostics);
-  drawFigures({severalErrorsFigure(estimates), severalPathsFigure(estimates)}, folder, *diagnostics);
-  for (const auto& [name, evaluation] : estimates) writePlots(evaluation, folder / name, *diagnostics);
+                   const ShareDone& progress, Diagnostics* diagnostics) {
+  const bool is_one = estimates.size() == 1;
+  if (!is_one)
+    drawFigures({severalErrorsFigure(estimates), severalPathsFigure(estimates)}, folder, *diagnostics);
+  double done = is_one ? 0.0 : 1.0;
+  const double total = done + static_cast<double>(estimates.size());
+  progress(done / total);
+  for (const auto& [name, evaluation] : estimates) {
+    writePlots(evaluation, is_one ? folder : folder / name, *diagnostics);
+    progress(++done / total);
+  }
 }
 
 nlohmann::ordered_json jsonOf(const std::vector<NamedEvaluation>& estimates,
@@ -173,18 +181,33 @@ void evaluateCommand(const Arguments& arguments) {
   std::vector<Diagnostics> findings(paths.size());
   std::vector<NamedEvaluation> estimates;
   std::vector<Trajectory> trajectories;
-  for (size_t i = 0; i < paths.size(); ++i)
+  Progress progress("evaluation", arguments.verbosity.quiet);
+  int steps = 0;  // for each estimate: read it, read the reference, compare, check the claims
+  const auto addStep = [&] { progress.show(++steps / (4.0 * static_cast<double>(paths.size()))); };
+  for (size_t i = 0; i < paths.size(); ++i) {
     trajectories.push_back(readTrajectory(paths[i], estimate_options, findings[i]));
+    addStep();
+  }
   keepPart(arguments.part, paths, &trajectories);
   for (size_t i = 0; i < paths.size(); ++i) {
     const Trajectory reference = readTrajectory(arguments.reference(), reference_options, findings[i]);
+    addStep();
     estimates.push_back({names[i], evaluate(trajectories[i], reference, options, findings[i])});
+    addStep();
     estimates.back().evaluation.claims =
         checkReported(paths[i], reference, options.association, &findings[i]);
+    addStep();
   }
   Diagnostics of_output;
-  if (!arguments.plots.empty()) writeAllPlots(estimates, arguments.plots, &of_output);
-  if (!arguments.html.empty()) writePage(arguments, estimates, &of_output);
+  if (!arguments.plots.empty()) {
+    progress.begin("plots");
+    writeAllPlots(estimates, arguments.plots, progress.function(), &of_output);
+  }
+  if (!arguments.html.empty()) {
+    progress.begin("page");
+    writePage(arguments, estimates, progress.function(), &of_output);
+  }
+  progress.end();
   if (!arguments.json.empty()) writeJson(arguments.json, jsonOf(estimates, findings));
   if (!arguments.verbosity.quiet) {
     fmt::print("{}", estimates.size() == 1 ? evaluationTable(estimates.front().evaluation)

@@ -33,7 +33,7 @@ void writeAsRun(const Trajectory& trajectory, const fs::path& folder) {
 }  // namespace
 
 std::string evaluationPage(const std::vector<PageEstimate>& estimates, const ReportReference& reference,
-                           Diagnostics* diagnostics) {
+                           const ShareDone& progress, Diagnostics* diagnostics) {
   const ScratchFolder scratch;
   std::vector<fs::path> runs;
   for (const PageEstimate& estimate : estimates) {
@@ -43,6 +43,7 @@ std::string evaluationPage(const std::vector<PageEstimate>& estimates, const Rep
   }
   ReportOptions options;
   options.reference = reference;
+  options.progress = progress;
   return reportPage(runs, options, diagnostics);
 }
 

@@ -6,6 +6,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/output/report/page/run_evaluation.h"
 #include "lodeline/trajectory.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 
@@ -19,6 +20,6 @@ struct PageEstimate {
 /// The page of `lodeline report` for estimates and a reference. Folders of runs appear with all their data;
 /// trajectories of other programs with their poses. Throws InputError and UsageError as reportPage() does.
 std::string evaluationPage(const std::vector<PageEstimate>& estimates, const ReportReference& reference,
-                           Diagnostics* diagnostics);
+                           const ShareDone& progress, Diagnostics* diagnostics);
 
 }  // namespace lodeline

@@ -70,8 +70,7 @@ void reportCommand(const Arguments& arguments) {
   }
   if (!arguments.pdf.empty()) {
     const char* path = std::getenv("PATH");
-    progress.begin("printing");
-    progress.show(std::nullopt, "by Chromium");
+    progress.begin("printing by Chromium");
     printPage(page, arguments.pdf, path == nullptr ? "" : path);
     progress.end();
     printDone(arguments.pdf, fs::file_size(arguments.pdf), arguments.runs.size(), arguments.verbosity);

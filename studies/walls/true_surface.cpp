@@ -103,17 +103,19 @@ Trajectory TrueSurface::withoutSilt(const Trajectory& true_poses) const {
   return clear;
 }
 
-double TrueSurface::area_m2(const Rigid3& truth_from_map, const SectionPlane& plane) const {
-  constexpr int kRays = 720;
-  double area = 0.0;
-  for (int i = 0; i < kRays; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / kRays;
+std::vector<double> TrueSurface::sectorAreas_m2(const Rigid3& truth_from_map, const SectionPlane& plane,
+                                                size_t sectors) const {
+  constexpr size_t kRays = 10;  // in a sector
+  std::vector<double> areas(sectors, 0.0);
+  const double step_rad = 2.0 * std::numbers::pi / static_cast<double>(kRays * sectors);
+  for (size_t i = 0; i < kRays * sectors; ++i) {
+    const double angle = step_rad * (static_cast<double>(i) + 0.5);
     const Vec3 direction = std::cos(angle) * plane.right + std::sin(angle) * plane.above;
     const auto range =
         world_->scene.range(truth_from_map * plane.origin, truth_from_map.rotation * direction);
-    area += std::numbers::pi / kRays * std::pow(range.value_or(0.0), 2.0);
+    areas[i / kRays] += 0.5 * step_rad * std::pow(range.value_or(0.0), 2.0);
   }
-  return area;
+  return areas;
 }
 
 std::vector<double> nearest_m(const std::vector<Vec3>& points, const std::vector<Vec3>& places) {

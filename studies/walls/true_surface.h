@@ -34,8 +34,9 @@ class TrueSurface {
   std::vector<Vec3> visible(const Trajectory& true_poses, double reach_m) const;
   /// The poses outside the silt-outs of the dive, which hide all walls.
   Trajectory withoutSilt(const Trajectory& true_poses) const;
-  /// Area that is seen from a station in its plane. `plane`: in the frame of a map.
-  double area_m2(const Rigid3& truth_from_map, const SectionPlane& plane) const;
+  /// Areas of the sectors about a station that are seen from it in its plane. `plane`: in the frame of a map.
+  std::vector<double> sectorAreas_m2(const Rigid3& truth_from_map, const SectionPlane& plane,
+                                     size_t sectors) const;
 
  private:
   Dive dive_;

@@ -5,13 +5,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "lodeline/output/survey/map/dive_map.h"
-#include "lodeline/output/walls/section/cross_section.h"
-#include "lodeline/util/csv_fields.h"
+#include "lodeline/output/walls/section/wall_sections.h"
 #include "studies/walls/true_surface.h"
 
 namespace {
@@ -20,28 +20,39 @@ using namespace lodeline;
 
 struct Arguments {
   std::string recording, run, walls, scenario = "cave1_short";
-  double from_s = 0.0, to_s = 1e9;
+  double from_s = 0.0, to_s = 1e9, spacing_m = 1.0;
   ScenarioChanges changes;
 };
 
-/// Points of cloud.ply as `lodeline walls` writes it.
-std::vector<Vec3> readCloud(const std::filesystem::path& file) {
-  constexpr size_t kVertexBytes = 31;
+/// cloud.ply or mesh.ply as `lodeline walls` writes it.
+WallMesh readWallsPly(const std::filesystem::path& file) {
+  constexpr size_t kVertexBytes = 31, kFaceBytes = 13;
   std::ifstream stream(file, std::ios::binary);
   std::string line;
-  size_t count = 0;
+  size_t vertices = 0, faces = 0;
   while (std::getline(stream, line) && line != "end_header") {
-    if (line.starts_with("element vertex ")) count = std::stoull(line.substr(15));
+    if (line.starts_with("element vertex ")) vertices = std::stoull(line.substr(15));
+    if (line.starts_with("element face ")) faces = std::stoull(line.substr(13));
   }
-  std::vector<char> bytes(kVertexBytes * count);
+  std::vector<char> bytes(kVertexBytes * vertices + kFaceBytes * faces);
   stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!stream || count == 0) throw InputError(file.string() + ": no cloud of `lodeline walls`");
-  std::vector<Vec3> points;
-  for (size_t i = 0; i < count; ++i) {
-    std::array<float, 3> position;
-    std::copy_n(bytes.data() + kVertexBytes * i, sizeof(position), reinterpret_cast<char*>(position.data()));
-    points.emplace_back(position[0], position[1], position[2]);
+  if (!stream || vertices == 0) throw InputError(file.string() + ": no walls of `lodeline walls`");
+  WallMesh mesh;
+  mesh.positions.resize(vertices);
+  for (size_t i = 0; i < vertices; ++i)
+    std::memcpy(mesh.positions[i].data(), bytes.data() + kVertexBytes * i, 3 * sizeof(float));
+  mesh.triangles.resize(faces);
+  for (size_t i = 0; i < faces; ++i) {
+    const char* face = bytes.data() + kVertexBytes * vertices + kFaceBytes * i;
+    std::memcpy(mesh.triangles[i].data(), face + 1, 3 * sizeof(uint32_t));
   }
+  return mesh;
+}
+
+std::vector<Vec3> readCloud(const std::filesystem::path& file) {
+  const WallMesh mesh = readWallsPly(file);
+  std::vector<Vec3> points;
+  for (const WallMesh::Point& point : mesh.positions) points.emplace_back(point.cast<double>());
   return points;
 }
 
@@ -83,30 +94,55 @@ void printErrors(const char* what, std::vector<double> errors_m) {
              errors_m.size());
 }
 
-/// Areas by sections.csv against the true ones.
-void printAreas(const std::filesystem::path& file, const DiveMap& map, const TrueSurface& truth,
-                const Rigid3& truth_from_map) {
-  std::ifstream stream(file);
-  std::string line;
-  std::getline(stream, line);
-  const std::vector<PassageSection> sections = passageSections(map.survey.stations);
-  std::vector<double> errors;
-  for (const PassageSection& section : sections) {
-    std::getline(stream, line);
-    std::vector<std::string_view> cells;
-    csv::split(line, &cells);
-    double area_m2 = 0.0;
-    if (cells.size() < 12 || !csv::parse(cells[9], &area_m2)) continue;
-    const double true_m2 = truth.area_m2(truth_from_map, planeAcross(section));
-    errors.push_back(100.0 * (area_m2 / true_m2 - 1.0));
-    fmt::print("section {:>3}: {:6.2f} m2, true {:6.2f} m2, {:+5.1f} %, walls in {} of the directions\n",
-               cells[0], area_m2, true_m2, errors.back(), cells[10]);
+/// Sections at the stations of the survey, as `lodeline walls` cuts them.
+std::vector<StationWalls> sectionsOf(const WallMesh& mesh, const DiveMap& map) {
+  const SectionOptions options;
+  std::vector<StationWalls> walls;
+  for (const PassageSection& section : passageSections(map.survey.stations)) {
+    StationWalls& wall = walls.emplace_back();
+    wall.across = planeAcross(section);
+    cutMesh(mesh, wall.across, options.reach_m, &wall.lines);
+    wall.outline = outlineOf(wall.lines, options);
   }
-  double sum = 0.0;
-  for (const double error : errors) sum += std::abs(error);
-  if (!errors.empty())
-    fmt::print("areas: {} of {} stations, mean error {:.1f} %\n", errors.size(), sections.size(),
-               sum / static_cast<double>(errors.size()));
+  return walls;
+}
+
+/// Prints median and largest of the sizes of errors in per cent.
+void printAreaErrors(const char* what, std::vector<double> errors, size_t stations) {
+  for (double& error : errors) error = std::abs(error);
+  std::sort(errors.begin(), errors.end());
+  if (errors.empty()) return fmt::print("{}: none of {} stations\n", what, stations);
+  fmt::print("{}: {} of {} stations, error: median {:.1f} %, largest {:.1f} %\n", what, errors.size(),
+             stations, quantile(errors, 0.5), errors.back());
+}
+
+/// Areas of the sections against the true ones: of closed sections as a whole, and of the seen sectors of all
+/// sections with walls in at least `kLeastShare` of the directions.
+void printAreas(const std::vector<StationWalls>& walls, const TrueSurface& truth,
+                const Rigid3& truth_from_map) {
+  constexpr double kLeastShare = 0.2;
+  std::vector<double> closed, seen;
+  for (size_t i = 0; i < walls.size(); ++i) {
+    const SectionOutline& outline = walls[i].outline;
+    if (outline.coverage < kLeastShare) continue;
+    const std::vector<double> areas =
+        truth.sectorAreas_m2(truth_from_map, walls[i].across, outline.radii_m.size());
+    double true_m2 = 0.0, true_seen_m2 = 0.0;
+    for (size_t k = 0; k < areas.size(); ++k) {
+      true_m2 += areas[k];
+      if (outline.radii_m[k]) true_seen_m2 += areas[k];
+    }
+    seen.push_back(100.0 * (outline.seen_area_m2 / true_seen_m2 - 1.0));
+    fmt::print("section {:>3}: walls in {:3.0f} % of the directions, {:6.2f} m2 seen, {:+5.1f} %", i,
+               100.0 * outline.coverage, outline.seen_area_m2, seen.back());
+    if (outline.area_m2) {
+      closed.push_back(100.0 * (*outline.area_m2 / true_m2 - 1.0));
+      fmt::print("; closed: {:6.2f} m2, {:+5.1f} %", *outline.area_m2, closed.back());
+    }
+    fmt::print("\n");
+  }
+  printAreaErrors("closed sections", closed, walls.size());
+  printAreaErrors("seen sectors", seen, walls.size());
 }
 
 void printCost(const std::filesystem::path& file) {
@@ -125,7 +161,9 @@ void study(const Arguments& arguments) {
   if (!holdsRecording(scenario, arguments.recording))
     throw InputError(arguments.recording + ": another scenario; give the options of `lodeline simulate`");
   Diagnostics diagnostics;
-  const DiveMap map = makeDiveMap(readRunFolder(arguments.run, &diagnostics), {}, {}, &diagnostics);
+  DiveMapOptions options;
+  options.stations.spacing_m = arguments.spacing_m;
+  const DiveMap map = makeDiveMap(readRunFolder(arguments.run, &diagnostics), options, {}, &diagnostics);
   const Trajectory true_poses = readTrajectory(arguments.recording, {}, diagnostics);
   const PosePairs pairs = associate(map.trajectory, true_poses, {AssociationMethod::Interpolate, 0.1, 0.0});
   // The vertical is part of the map: a turn about a straight dive would not show in its positions.
@@ -158,7 +196,7 @@ void study(const Arguments& arguments) {
       printErrors("  outside of silt-outs", nearest_m(cloud, truth.visible(clear, reach_m)));
   }
   if (is_colmap) return;
-  printAreas(walls / "sections.csv", map, truth, truth_from_map);
+  printAreas(sectionsOf(readWallsPly(walls / "mesh.ply"), map), truth, truth_from_map);
   printCost(walls / "walls.json");
 }
 
@@ -172,6 +210,7 @@ int main(int argc, char** argv) {
   program.add_option("WALLS", arguments.walls, "of `lodeline walls`, or points3D.txt of COLMAP")->required();
   program.add_option("--from", arguments.from_s, "s of the run, as for `lodeline walls`");
   program.add_option("--to", arguments.to_s);
+  program.add_option("--spacing", arguments.spacing_m, "m between the stations, as for `lodeline walls`");
   program.add_option("--scenario", arguments.scenario);
   program.add_option("--realism", arguments.changes.realism);
   program.add_option("--metres", arguments.changes.metres);

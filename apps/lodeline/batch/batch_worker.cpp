@@ -16,6 +16,7 @@
 #include "apps/lodeline/shared/interruption.h"
 #include "lodeline/pipeline/stop_request.h"
 #include "lodeline/util/files/output_file.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 namespace {
@@ -29,7 +30,7 @@ constexpr std::chrono::seconds kRenewInterval(30);
 class BatchWorker {
  public:
   BatchWorker(const BatchList& list, const BatchFolder& folder, const BatchWork& work)
-      : list_(list), folder_(folder), work_(work) {
+      : list_(list), folder_(folder), work_(work), progress_("batch", work.quiet) {
     createOutputFolder(folder.path());
     if (work.retry) started_s_ = fileSystemTime_s(folder.path());
     for (size_t i = 0; i < list.items.size(); ++i) {
@@ -51,6 +52,8 @@ class BatchWorker {
       }
       proceedJobs();
       startJobs();
+      progress_.show(total_ == 0 ? 1.0 : static_cast<double>(finished_) / static_cast<double>(total_),
+                     fmt::format("{} running", jobs_.size()));
       if (jobs_.empty() && (open_.empty() || (!work_.wait && was_scanned_))) break;
       std::this_thread::sleep_for(kPollInterval);
     }
@@ -142,6 +145,7 @@ class BatchWorker {
     }
     record_ << fmt::format("{:.3f},{},{}\n", now_s, item.name, event) << std::flush;
     if (std::string_view(event) != "started") ++finished_;
+    progress_.end();
     if (!work_.quiet) fmt::print(stderr, "{} of {}: {} {}\n", finished_, total_, item.name, event);
   }
 
@@ -156,6 +160,7 @@ class BatchWorker {
   const BatchList& list_;
   const BatchFolder& folder_;
   const BatchWork& work_;
+  Progress progress_;
   StopRequest stop_;
   std::ofstream record_;
   double started_s_ = 0.0;  ///< on the clock of the file system

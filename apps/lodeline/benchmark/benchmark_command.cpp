@@ -19,6 +19,7 @@
 #include "apps/lodeline/benchmark/prepared_sequence.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/util/files/output_file.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 namespace {
@@ -89,11 +90,15 @@ void runBenchmark(BenchmarkArguments arguments) {
   const BatchFolder folder(arguments.output);
   std::vector<PreparedSequence> sequences;
   std::vector<std::string> absent;
+  Progress progress("preparing", arguments.work.quiet);
+  double looked_at = 0.0;
   for (const SetSequence& sequence : set.sequences) {
+    progress.show(looked_at++ / static_cast<double>(set.sequences.size()), sequence.name);
     auto prepared = prepareSequence(set, sequence, files, folder.path() / "sequences" / sequence.name);
     if (prepared) sequences.push_back(std::move(*prepared));
     if (!prepared) absent.push_back(sequence.name);
   }
+  progress.end();
   if (sequences.empty()) {
     throw InputError(fmt::format("{}: no sequence of {} is here; looked for {}", arguments.folder, set.title,
                                  fmt::join(absent, ", ")));

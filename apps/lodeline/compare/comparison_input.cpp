@@ -14,6 +14,7 @@
 #include "lodeline/pipeline/open_recording.h"
 #include "lodeline/util/files/file_kind.h"
 #include "lodeline/util/files/output_file.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 namespace {
@@ -146,6 +147,8 @@ fs::path convertedRecording(const fs::path& bag, const ComparisonRequest& reques
   ConvertOptions options;
   options.rig_files.assign(request.run.bag.rig_files.begin(), request.run.bag.rig_files.end());
   options.topics = topicsOf(request.run.bag);
+  Progress progress("conversion", request.run.quiet);
+  options.progress = progress.function();
   if (isBag(bag)) {
     convertBagToFolder(bag, unfinished, options, &diagnostics);
   } else {

@@ -105,8 +105,12 @@ void addRuns(MapFile* map, const MapArguments& arguments) {
     progress.end();
     if (!arguments.verbosity.quiet) printMerged(merged, is_first);
   }
-  const MapSolution solution = solveMap(map, {});
+  progress.begin("solving");
+  MapSolutionOptions solving;
+  solving.progress = progress.function();
+  const MapSolution solution = solveMap(map, solving);
   writeLedger(*map);
+  progress.end();
   if (arguments.verbosity.quiet) return;
   printSolution(solution);
   fmt::print("written: {}\nwritten: {}\n", map->path().string(), ledgerPath(map->path().string()).string());
@@ -145,7 +149,11 @@ void addMapBuildCommands(CLI::App* map) {
   addVerbosity(&arguments->verbosity, solve);
   solve->callback([arguments] {
     MapFile file = MapFile::open(arguments->map, MapFile::Access::Change);
-    const MapSolution solution = solveMap(&file, {});
+    Progress progress("solving", arguments->verbosity.quiet);
+    MapSolutionOptions solving;
+    solving.progress = progress.function();
+    const MapSolution solution = solveMap(&file, solving);
+    progress.end();
     if (!arguments->verbosity.quiet) printSolution(solution);
   });
 }

@@ -11,6 +11,7 @@
 #include "lodeline/mapping/store/map_change.h"
 #include "lodeline/mapping/store/map_file.h"
 #include "lodeline/util/json_text.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 namespace {
@@ -98,7 +99,9 @@ nlohmann::ordered_json infoJson(const MapFile& map) {
 
 void printInfo(const ContentArguments& arguments) {
   const MapFile map = MapFile::open(arguments.map, MapFile::Access::Read);
+  Progress progress("reading", false);
   const nlohmann::ordered_json json = infoJson(map);
+  progress.end();
   if (arguments.json) {
     fmt::print("{}\n", jsonText(json));
     return;
@@ -126,7 +129,9 @@ void printInfo(const ContentArguments& arguments) {
 
 void checkMap(const ContentArguments& arguments) {
   const MapFile map = MapFile::open(arguments.map, MapFile::Access::Read);
+  Progress progress("checking", false);
   const std::vector<MapFault> faults = map.check();
+  progress.end();
   for (const MapFault& fault : faults) fmt::print("serious [{}]: {}\n", fault.kind, fault.text);
   if (!faults.empty())
     throw InputError(fmt::format("{}: {} faults; restore a copy of the map", arguments.map, faults.size()));
@@ -142,10 +147,12 @@ void removeDive(const ContentArguments& arguments) {
     throw UsageError(fmt::format("{}: there is no dive '{}'; there are {}", arguments.map, arguments.dive,
                                  names.empty() ? "none" : names));
   }
+  Progress progress("removing", false);
   MapChange change = map.change();
   change.removeDive(dive->id);
   change.commit();
   map.compact();
+  progress.end();
   fmt::print("removed: {}; `lodeline map solve {}` solves the rest again\n", arguments.dive, arguments.map);
 }
 

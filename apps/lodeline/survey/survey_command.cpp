@@ -84,15 +84,15 @@ std::string addRun(const ProjectDive& dive, const ShareDone& progress, MapFile* 
                      is_first || merged.summary.is_placed ? "" : "; no place of the map was recognized");
 }
 
-void addProjectRuns(const SurveyProject& project, const Verbosity& verbosity, MapFile* map) {
-  Progress progress("joining dives", verbosity.quiet);
+void addProjectRuns(const SurveyProject& project, bool quiet, Progress& progress, MapFile* map) {
+  progress.begin("joining dives");
   const auto count = static_cast<double>(project.dives.size());
   double done = 0.0;
   for (const ProjectDive& dive : project.dives) {
     const std::string added = addRun(
         dive, [&](double share) { progress.show((done + share) / count, dive.dive); }, map);
     ++done;
-    if (verbosity.quiet) continue;
+    if (quiet) continue;
     progress.end();
     fmt::print("{}", added);
   }
@@ -108,7 +108,7 @@ void reportSolution(const MapSolution& solution, Diagnostics* diagnostics) {
 }
 
 /// The common map of a project: its own, or a new one of its runs. Control points are added and solved for.
-MapFile mapOf(const SurveyProject& project, const fs::path& output, const Verbosity& verbosity,
+MapFile mapOf(const SurveyProject& project, const fs::path& output, bool quiet, Progress& progress,
               Diagnostics* diagnostics) {
   const bool is_given = !project.map.empty();
   if (is_given && project.control.empty()) return MapFile::open(project.map, MapFile::Access::Read);
@@ -118,12 +118,15 @@ MapFile mapOf(const SurveyProject& project, const fs::path& output, const Verbos
   for (const char* suffix : {"", "-wal", "-shm"}) fs::remove(built.string() + suffix);
   if (is_given) fs::copy_file(project.map, built);
   MapFile map = MapFile::openOrCreate(built, {});
-  if (!is_given) addProjectRuns(project, verbosity, &map);
+  if (!is_given) addProjectRuns(project, quiet, progress, &map);
   ControlReadOptions options;
   options.site = map.description().site;
   if (!project.entrance.empty()) options.site = placeFromText(project.entrance, "entrance", diagnostics);
   for (const fs::path& file : project.control) addControlFile(&map, file, options, diagnostics);
-  reportSolution(solveMap(&map, {}), diagnostics);
+  progress.begin("solving");
+  MapSolutionOptions solving;
+  solving.progress = progress.function();
+  reportSolution(solveMap(&map, solving), diagnostics);
   return map;
 }
 
@@ -144,7 +147,10 @@ void makeSurvey(const SurveyArguments& arguments) {
   Diagnostics diagnostics;
   const fs::path folder = arguments.output;
   createOutputFolder(folder);
-  const MapFile map = mapOf(project, folder, arguments.verbosity, &diagnostics);
+  const bool quiet = arguments.verbosity.quiet;
+  Progress progress("survey", quiet);
+  const MapFile map = mapOf(project, folder, quiet, progress, &diagnostics);
+  progress.begin("survey");
   const CaveSurvey cave = caveOfMap(map, project, &diagnostics);
   const DiveMap owner = ownerOf(cave, arguments.project);
   const std::vector<std::pair<std::string, std::string>> files = {
@@ -157,7 +163,8 @@ void makeSurvey(const SurveyArguments& arguments) {
   if (!arguments.overwrite) expectOwnFiles(folder, owner, names);
   for (const auto& [name, text] : files) writeOutput(folder / name, text);
   writeOutput(folder / notesFileName(cave.name), notesText(owner));
-  if (!arguments.verbosity.quiet) {
+  progress.end();
+  if (!quiet) {
     for (const std::string& note : cave.notes) fmt::print("{}\n", note);
     for (const std::string& name : names) fmt::print("written: {}\n", (folder / name).string());
     fmt::print("written: {}\n", (folder / notesFileName(cave.name)).string());

@@ -26,8 +26,8 @@ struct Reading {
   std::optional<FieldUnit> unit;
 };
 
-void readImu(const EurocLayout& layout, const RigFile& rig, MagnetometerRecord* record,
-             Diagnostics* diagnostics) {
+void readImu(const EurocLayout& layout, const RigFile& rig, const ShareDone& progress,
+             MagnetometerRecord* record, Diagnostics* diagnostics) {
   if (rig.has_imu) {
     record->imu_noise = rig.rig.imu.noise;
   } else {
@@ -37,6 +37,7 @@ void readImu(const EurocLayout& layout, const RigFile& rig, MagnetometerRecord* 
   }
   CsvReader csv(layout.csv("imu0"), CsvContent::Imu, diagnostics, kInertialRate);
   for (CsvRow row; csv.next(&row);) {
+    progress(csv.shareRead().value_or(0.0));
     if (!record->imu.empty() && row.time <= record->imu.back().time) {
       diagnostics->report(Severity::Warning, "imu_order",
                           fmt::format("{}:{}: not later than the reading before; passed over",
@@ -59,7 +60,7 @@ RigFile readCalibration(const EurocLayout& layout, Diagnostics* diagnostics) {
   return rig;
 }
 
-Reading readFolder(const std::filesystem::path& data, Diagnostics* diagnostics) {
+Reading readFolder(const std::filesystem::path& data, const ShareDone& progress, Diagnostics* diagnostics) {
   EurocOptions options;
   options.with_cameras = false;
   options.needs_imu = false;
@@ -72,12 +73,13 @@ Reading readFolder(const std::filesystem::path& data, Diagnostics* diagnostics) 
   Reading reading;
   reading.unit = FieldUnit::Tesla;
   const RigFile rig = readCalibration(layout, diagnostics);
-  if (layout.has_imu) readImu(layout, rig, &reading.record, diagnostics);
+  if (layout.has_imu) readImu(layout, rig, progress, &reading.record, diagnostics);
   if (rig.rig.magnetometer) {
     reading.record.body_from_magnetometer = rig.rig.magnetometer->body_from_magnetometer.rotation;
   }
   CsvReader rows(csv, CsvContent::Magnetometer, diagnostics, kMagnetometerRate);
   for (CsvRow row; rows.next(&row);) {
+    if (!layout.has_imu) progress(rows.shareRead().value_or(0.0));
     reading.record.magnetometer.push_back({row.time, Vec3(row.numbers.data())});
   }
   return reading;
@@ -176,7 +178,8 @@ void settleUnit(const std::string& data, const RecordOptions& options, std::opti
   for (MagnetometerSample& sample : record->magnetometer) sample.field_M *= teslaPer(unit);
 }
 
-Reading readSource(MeasurementSource& source, bool is_mounting_known, Diagnostics* diagnostics) {
+Reading readSource(MeasurementSource& source, bool is_mounting_known, const ShareDone& progress,
+                   Diagnostics* diagnostics) {
   Reading reading;
   reading.unit = FieldUnit::Tesla;
   reading.record.imu_noise = source.rig().imu.noise;
@@ -187,7 +190,11 @@ Reading readSource(MeasurementSource& source, bool is_mounting_known, Diagnostic
   expected.spreads_bursts = true;
   OrderedStream<ImuSample> imu(
       expected, [&] { return source.nextImu(); }, diagnostics);
-  while (imu.peek() != nullptr) reading.record.imu.push_back(imu.pop());
+  const auto* recorded = dynamic_cast<const RecordedSource*>(&source);
+  while (imu.peek() != nullptr) {
+    reading.record.imu.push_back(imu.pop());
+    if (recorded != nullptr) progress(recorded->shareRead().value_or(0.0));
+  }
   while (const std::optional<MagnetometerSample> sample = source.nextMagnetometer()) {
     reading.record.magnetometer.push_back(*sample);
   }
@@ -224,12 +231,14 @@ MagnetometerRecord settled(Reading reading, const std::string& name, const Recor
 MagnetometerRecord readMagnetometerRecord(MeasurementSource& source, const std::string& name,
                                           bool is_mounting_known, const RecordOptions& options,
                                           Diagnostics* diagnostics) {
-  return settled(readSource(source, is_mounting_known, diagnostics), name, options, diagnostics);
+  return settled(readSource(source, is_mounting_known, options.progress, diagnostics), name, options,
+                 diagnostics);
 }
 
 MagnetometerRecord readMagnetometerRecord(const std::filesystem::path& data, const RecordOptions& options,
                                           Diagnostics* diagnostics) {
-  Reading reading = isSensorLog(data) ? readLog(data, options, diagnostics) : readFolder(data, diagnostics);
+  Reading reading = isSensorLog(data) ? readLog(data, options, diagnostics)
+                                      : readFolder(data, options.progress, diagnostics);
   return settled(std::move(reading), data.string(), options, diagnostics);
 }
 

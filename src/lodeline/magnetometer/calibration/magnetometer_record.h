@@ -9,6 +9,7 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/recording.h"
 #include "lodeline/rig.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 
@@ -17,6 +18,7 @@ struct RecordOptions {
   /// Part to use, counted from the first magnetometer reading.
   double from_s = 0.0;
   std::optional<double> to_s;
+  ShareDone progress = [](double) {};  ///< takes the share that is read
 };
 
 /// Input data of a calibration.

@@ -147,8 +147,12 @@ MapSolution solveMap(MapFile* map, const MapSolutionOptions& options) {
   if (graph.keyframes.empty()) return solution;
   addLoops(*map, &graph);
   addControl(*map, &graph);
+  constexpr double kSteps = 4.0;  // reading, solution, covariance, writing
+  options.progress(1.0 / kSteps);
   const GraphSummary summary = graph.graph.solve();
+  options.progress(2.0 / kSteps);
   const GraphCovariance covariance = graph.graph.covariance();
+  options.progress(3.0 / kSteps);
   MapChange change = map->change();
   for (const KeyframeId id : graph.keyframes)
     change.setSolution(id, {graph.graph.pose(id), covariance.of(id)});
@@ -170,6 +174,7 @@ MapSolution solveMap(MapFile* map, const MapSolutionOptions& options) {
     }
   }
   change.commit();
+  options.progress(1.0);
   solution.converged = summary.converged;
   solution.dives = static_cast<int>(graph.names.size());
   solution.keyframes = static_cast<int>(graph.keyframes.size());

@@ -5,12 +5,14 @@
 
 #include "lodeline/mapping/graph/keyframe_factors.h"
 #include "lodeline/mapping/store/map_file.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 
 struct MapSolutionOptions {
   PoseGraphOptions graph;
   KeyframeFactorOptions factors;
+  ShareDone progress = [](double) {};  ///< takes the share of the steps that are done
 };
 
 /// A control point at the common solution.

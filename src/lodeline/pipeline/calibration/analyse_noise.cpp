@@ -66,6 +66,7 @@ void readFolder(const NoiseRequest& request, Diagnostics* diagnostics, Analyses*
   analyses->has_magnetometer = true;
   CsvReader magnetometer(layout.csv("mag0"), CsvContent::Magnetometer, diagnostics, kMagnetometerRate);
   for (Part part(request); magnetometer.next(&row);) {
+    if (!layout.has_imu) request.progress(magnetometer.shareRead().value_or(0.0));
     if (part.holds(row.time)) analyses->magnetometer.add(row.time, Vec3(row.numbers.data()));
   }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lodeline/geometry/so3.h"
 #include "lodeline/rig_calibration/result/camera_results.h"
@@ -25,12 +26,26 @@ BoardRecord prepared(const BoardRecord& record, const RigCalibrationOptions& opt
   return result;
 }
 
-void solveCameras(const CalibrationBoard& board, const FixedParameters& fixed, RigState* state) {
+/// Counts the solutions of a calibration.
+class SolutionCount {
+ public:
+  SolutionCount(ShareDone progress, bool has_imu)
+      : progress_(std::move(progress)), total_(kRounds + (has_imu ? kInertialRounds + 1 : 0) + 1) {}
+  void addOne() { progress_(static_cast<double>(++done_) / total_); }
+
+ private:
+  ShareDone progress_;
+  int done_ = 0, total_;  ///< the covariance counts as the last one
+};
+
+void solveCameras(const CalibrationBoard& board, const FixedParameters& fixed, SolutionCount* count,
+                  RigState* state) {
   const InertialLinks none;
   for (int round = 0; round < kRounds; ++round) {
     settleCornerSigmas(board, state);
     RigProblem(state, board, fixed, none).solve(kSteps);
     dropOutlyingFrames(board, state);
+    count->addOne();
   }
   settleCornerSigmas(board, state);
 }
@@ -55,7 +70,8 @@ struct InertialSolution {
   double noise_inflation = 1.0;
 };
 
-InertialSolution solveInertial(const BoardRecord& record, const FixedParameters& fixed, RigState* state) {
+InertialSolution solveInertial(const BoardRecord& record, const FixedParameters& fixed, SolutionCount* count,
+                               RigState* state) {
   InertialSolution solution;
   for (int round = 0; round < kInertialRounds; ++round) {
     solution.links = linkFrames(record.imu, record.rig.imu, solution.noise_inflation, state);
@@ -65,9 +81,11 @@ InertialSolution solveInertial(const BoardRecord& record, const FixedParameters&
     solution.noise_inflation = std::max(1.0, solution.noise_inflation * error);
     applyDelay(state);
     settleCornerSigmas(record.board, state);
+    count->addOne();
   }
   solution.links = linkFrames(record.imu, record.rig.imu, solution.noise_inflation, state);
   RigProblem(state, record.board, fixed, solution.links).solve(kSteps);
+  count->addOne();
   return solution;
 }
 
@@ -98,20 +116,22 @@ RigCalibrationResult calibrateRig(const BoardRecord& given, const RigCalibration
   const BoardRecord record = prepared(given, options);
   const FixedParameters fixed{options.keeps_lens, options.keeps_port};
   RigState state = startCameras(record, {options.model, options.keeps_lens}, diagnostics);
-  solveCameras(record.board, fixed, &state);
   RigCalibrationResult result;
+  result.without_inertial = whyWithoutImu(record, options);
+  SolutionCount count(options.progress, result.without_inertial.empty());
+  solveCameras(record.board, fixed, &count, &state);
   result.board = record.board;
   result.rig = record.rig;
-  result.without_inertial = whyWithoutImu(record, options);
   InertialSolution solution;
   if (result.without_inertial.empty()) {
     const InertialStart start = alignRates(state, record.imu, options.most_delay_s);
     enterInertialFrame(start, record.imu, &state);
-    solution = solveInertial(record, fixed, &state);
+    solution = solveInertial(record, fixed, &count, &state);
     result.inertial = inertialResult(start, solution.noise_inflation, record, state);
   }
   RigProblem problem(&state, record.board, fixed, solution.links);
   const Posterior posterior = problem.posterior();
+  count.addOne();
   result.sigma_inflation = posterior.largest_inflation;
   result.cameras = cameraResults(record, state, posterior, result.inertial.has_value());
   for (size_t k = 0; k < result.cameras.size(); ++k) result.rig.cameras[k] = result.cameras[k].calibration;

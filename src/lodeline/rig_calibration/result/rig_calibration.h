@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lodeline/rig_calibration/record/board_record.h"
+#include "lodeline/util/terminal/progress.h"
 
 namespace lodeline {
 
@@ -14,7 +15,8 @@ struct RigCalibrationOptions {
   bool keeps_lens = false;   ///< of the stated calibration
   bool keeps_port = false;   ///< of the stated calibration
   bool uses_imu = true;
-  double most_delay_s = 0.15;  ///< between images and IMU, either way
+  double most_delay_s = 0.15;          ///< between images and IMU, either way
+  ShareDone progress = [](double) {};  ///< takes the share of the solutions that are done
 };
 
 /// What a calibration is worth. Poor results are not to be used.

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 
 namespace lodeline {
 
@@ -12,12 +15,13 @@ using ShareDone = std::function<void(double share)>;
 
 /// Shows on the standard error stream how much of a long task is done: per cent, remaining time and words. On
 /// a terminal it draws one line anew, from the third second on, no longer than the terminal is wide;
-/// elsewhere it writes a line every ten seconds.
+/// elsewhere it writes a line every ten seconds, or as often as LODELINE_PROGRESS_S says. A thread repeats
+/// the last state with its new time while the task calls nothing, as in a solver or another program.
 class Progress {
  public:
-  /// `quiet`: show nothing.
+  /// `quiet`: show nothing. Throws UsageError where LODELINE_PROGRESS_S is no number of seconds.
   Progress(std::string task, bool quiet);
-  ~Progress() { end(); }
+  ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
@@ -37,10 +41,19 @@ class Progress {
  private:
   using Clock = std::chrono::steady_clock;
 
-  std::string task_;
-  bool quiet_, is_terminal_;
-  bool is_drawn_ = false;
+  void restart();
+  void draw(Clock::time_point now);
+  void repeat();
+
+  const bool quiet_, is_terminal_;
+  const std::chrono::milliseconds pause_;  ///< elsewhere than on a terminal
+  mutable std::mutex mutex_;               ///< for all below
+  std::string task_, words_;
+  std::optional<double> share_;
+  bool is_open_ = true, is_drawn_ = false, is_over_ = false;
   Clock::time_point start_, next_;
+  std::condition_variable over_;
+  std::thread repeater_;
 };
 
 /// "TASK  41 %  2:05 left  WORDS". `elapsed_s`: since the start of the task.

@@ -15,15 +15,15 @@ Vec3 leftOf(const Vec3& along, const Vec3& fallback) {
   return left.norm() > 0.2 ? left.normalized() : fallback;
 }
 
-/// Mean direction of the legs that meet at a station.
+/// Mean direction of the legs that meet at a station; where the dive turns round, that of the leg before.
 Vec3 directionAt(const std::vector<SurveyStation>& stations, size_t i) {
   const auto leg = [&](size_t from) {
     return (stations[from + 1].position_ENU - stations[from].position_ENU).normalized();
   };
   if (i == 0) return leg(0);
   if (i + 1 == stations.size()) return leg(i - 1);
-  const Vec3 mean = leg(i - 1) + leg(i);
-  return mean.norm() > 0.2 ? mean.normalized() : leg(i - 1);
+  const Vec3 before = leg(i - 1), after = leg(i);
+  return before.dot(after) < 0.0 ? before : (before + after).normalized();
 }
 
 /// Wall points near the plane across the passage, relative to the station.

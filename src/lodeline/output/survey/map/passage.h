@@ -16,7 +16,9 @@ struct PassageSection {
   Vec3 above() const { return along.cross(left); }
 };
 
-/// The axes at every station; `along` is the mean direction of the legs that meet there.
+/// The axes at every station; `along` is the mean direction of the legs that meet there. Where they are more
+/// than 90 degrees apart, the dive turned round in the passage, and `along` is the direction of the first of
+/// them.
 std::vector<PassageSection> passageSections(const std::vector<SurveyStation>& stations);
 
 /// Computes the distances left, right, up and down and the splays of every station, from points on the walls

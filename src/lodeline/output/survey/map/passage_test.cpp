@@ -81,6 +81,29 @@ TEST(Passage, IsUnknownWhereNoWallWasSeen) {
   EXPECT_TRUE(alone.stations[2].splays_ENU.empty());
 }
 
+TEST(Passage, IsMeasuredAcrossTheWayInWhereTheDiveTurnsRound) {
+  Survey survey = straightSurvey(Vec3::UnitX());
+  // The way back begins 3 m beside the way in: the mean of both directions points to that side.
+  for (int i = 4; i >= 0; --i) {
+    survey.stations.emplace_back();
+    survey.stations.back().position_ENU = Vec3(5.0 * i, 3.0 * (i < 4 ? 1.0 : 0.4), 0.0);
+  }
+  survey.stations.erase(survey.stations.begin() + 5);
+  const std::vector<PassageSection> sections = passageSections(survey.stations);
+  EXPECT_LT((sections[4].along - Vec3::UnitX()).norm(), 1e-12);
+  EXPECT_LT((sections[4].left - Vec3::UnitY()).norm(), 1e-12);
+  EXPECT_LT(sections[6].along.x(), -0.9);
+
+  // A bend of less than a right angle keeps the mean direction.
+  Survey bend;
+  for (const Vec3& position : {Vec3(0.0, 0.0, 0.0), Vec3(5.0, 0.0, 0.0), Vec3(6.0, 5.0, 0.0)}) {
+    bend.stations.emplace_back();
+    bend.stations.back().position_ENU = position;
+  }
+  const Vec3 along = passageSections(bend.stations)[1].along;
+  EXPECT_NEAR(std::atan2(along.y(), along.x()), 0.5 * std::atan2(5.0, 1.0), 1e-9);
+}
+
 TEST(Splays, GoToPointsOfTheMapAllAround) {
   const RunFolder run = test::windingDive(40.0);
   std::vector<Vec3> walls;

@@ -29,6 +29,10 @@ std::vector<std::vector<double>> distancesBySector(const std::vector<SectionLine
   return distances;
 }
 
+double sectorArea_m2(double radius_m, size_t sectors) {
+  return 0.5 * radius_m * radius_m * kTurn / static_cast<double>(sectors);
+}
+
 /// The radii with gaps filled from both sides; empty where a gap is too wide.
 std::optional<std::vector<double>> filled(const std::vector<std::optional<double>>& radii, size_t max_gap) {
   const size_t count = radii.size();
@@ -123,12 +127,13 @@ SectionOutline outlineOf(std::vector<std::optional<double>> radii_m, const Secti
   const auto known = std::count_if(outline.radii_m.begin(), outline.radii_m.end(),
                                    [](const std::optional<double>& radius) { return radius.has_value(); });
   outline.coverage = static_cast<double>(known) / static_cast<double>(outline.radii_m.size());
+  for (const std::optional<double>& radius : outline.radii_m)
+    outline.seen_area_m2 += sectorArea_m2(radius.value_or(0.0), outline.radii_m.size());
   if (outline.coverage < options.least_coverage) return outline;
   const auto radii = filled(outline.radii_m, options.max_gap_sectors);
   if (!radii) return outline;
   double area_m2 = 0.0;
-  for (const double radius : *radii)
-    area_m2 += 0.5 * radius * radius * kTurn / static_cast<double>(radii->size());
+  for (const double radius : *radii) area_m2 += sectorArea_m2(radius, radii->size());
   outline.area_m2 = area_m2;
   return outline;
 }

@@ -44,7 +44,8 @@ struct SectionOptions {
 struct SectionOutline {
   std::vector<std::optional<double>> radii_m;  ///< by sector, counter-clockwise from the right; its middle
   double coverage = 0.0;                       ///< share of the sectors with walls
-  std::optional<double> area_m2;               ///< empty where too much of the outline is unknown
+  double seen_area_m2 = 0.0;                   ///< of the sectors with walls: the least the section has
+  std::optional<double> area_m2;               ///< empty where the outline is open
 
   double angle_rad(size_t sector) const;
   /// Median distance of the sectors within 7.5 degrees of a direction.

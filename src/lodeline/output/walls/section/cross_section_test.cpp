@@ -4,6 +4,8 @@
 
 #include <numbers>
 
+#include "lodeline/output/walls/section/wall_sections.h"
+
 namespace lodeline {
 namespace {
 
@@ -51,6 +53,39 @@ TEST(CrossSection, KnowsRightFromLeft) {
   EXPECT_NEAR(outline.towards(0.5 * std::numbers::pi).value(), 1.4, 0.05);
   EXPECT_NEAR(outline.towards(-0.5 * std::numbers::pi).value(), 1.0, 0.05);
   EXPECT_NEAR(outline.area_m2.value(), std::numbers::pi * 2.0 * 1.2, 0.1);
+}
+
+TEST(CrossSection, OfAnOpenPassageHasTheAreaThatWasSeen) {
+  const auto isAbove = [](double angle) { return angle < std::numbers::pi; };
+  const SectionOutline whole = outlineAt(tube(2.0, 2.0, closed), Vec3::Zero());
+  EXPECT_NEAR(whole.seen_area_m2, whole.area_m2.value(), 1e-9);
+  const SectionOutline half = outlineAt(tube(2.0, 2.0, isAbove), Vec3::Zero());
+  EXPECT_FALSE(half.area_m2);
+  EXPECT_NEAR(half.seen_area_m2, 2.0 * std::numbers::pi, 0.2);
+  EXPECT_EQ(outlineOf(std::vector<SectionLine>(), {}).seen_area_m2, 0.0);
+}
+
+TEST(CrossSection, OnTheSheetTellsWhatWasSeenInAScaleForMost) {
+  const auto wallsOf = [](double radius_m, const auto& is_open) {
+    StationWalls walls;
+    walls.across = planeAcross({Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY()});
+    cutMesh(tube(radius_m, radius_m, is_open), walls.across, 30.0, &walls.lines);
+    walls.outline = outlineOf(walls.lines, {});
+    return walls;
+  };
+  const auto isAbove = [](double angle) { return angle < std::numbers::pi; };
+  const auto isNearlyAll = [](double angle) { return angle > 0.2; };
+  DiveMap map;
+  map.title = "dive <1>";
+  const std::string sheet = sectionsSvg(
+      map, {wallsOf(2.0, closed), wallsOf(2.0, isAbove), StationWalls(), wallsOf(20.0, isNearlyAll)});
+  EXPECT_NE(sheet.find("dive &lt;1&gt;"), std::string::npos);
+  EXPECT_NE(sheet.find(">0: 12.6 m², walls in 100 %<"), std::string::npos) << sheet;
+  EXPECT_NE(sheet.find(">1: open, 6."), std::string::npos) << sheet;
+  EXPECT_NE(sheet.find(">2: no walls seen<"), std::string::npos);
+  // A wall at 20 m in one direction does not set the scale: 2 m fill most of a panel.
+  EXPECT_NE(sheet.find(">1 m<"), std::string::npos) << sheet;
+  EXPECT_EQ(sheet.find("nan"), std::string::npos);
 }
 
 TEST(CrossSection, FillsASmallGapOnly) {

@@ -152,15 +152,15 @@ std::string sectionsCsv(const DiveMap& map, const std::vector<StationWalls>& wal
   };
   std::string text =
       "station,time,east_m,north_m,up_m,left_m,right_m,up_wall_m,down_wall_m,area_m2,coverage,"
-      "volume_to_next_m3\n";
+      "volume_to_next_m3,seen_area_m2\n";
   for (size_t i = 0; i < walls.size(); ++i) {
     const SurveyStation& station = map.survey.stations[i];
     const StationWalls& wall = walls[i];
-    text += fmt::format("{},{},{:.3f},{:.3f},{:.3f},{},{},{},{},{},{:.3f},{}\n", i,
-                        isoTime(station.time).value_or(""), station.position_ENU.x(),
-                        station.position_ENU.y(), station.position_ENU.z(), number(wall.size.left),
-                        number(wall.size.right), number(wall.size.up), number(wall.size.down),
-                        number(wall.outline.area_m2), wall.outline.coverage, number(wall.volume_to_next_m3));
+    text += fmt::format(
+        "{},{},{:.3f},{:.3f},{:.3f},{},{},{},{},{},{:.3f},{},{:.3f}\n", i, isoTime(station.time).value_or(""),
+        station.position_ENU.x(), station.position_ENU.y(), station.position_ENU.z(), number(wall.size.left),
+        number(wall.size.right), number(wall.size.up), number(wall.size.down), number(wall.outline.area_m2),
+        wall.outline.coverage, number(wall.volume_to_next_m3), wall.outline.seen_area_m2);
   }
   return text;
 }
