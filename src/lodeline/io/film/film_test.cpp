@@ -182,6 +182,21 @@ TEST_F(FilmTest, LeavesOutWhatIsBeforeAKeyImage) {
   }
 }
 
+TEST_F(FilmTest, DecodesInAnyOrderWithoutAnIndex) {
+  TestFilm film;
+  film.images = 40;
+  film.reordered = 2;
+  const std::filesystem::path file = write(film, "film.ts");
+  std::vector<Duration> times;
+  FilmFrameTimes reader(file, 0);
+  while (const std::optional<Duration> time = reader.next()) times.push_back(*time);
+  ASSERT_EQ(times.size(), 40U);
+  FilmDecoder decoder(file, 0, {});
+  for (const int number : {0, 39, 38, 3, 37, 36, 14, 1, 35, 2}) {
+    EXPECT_EQ(numberOf(decoder.load(times[static_cast<size_t>(number)])), number);
+  }
+}
+
 TEST_F(FilmTest, DecodesForSeveralThreads) {
   TestFilm film;
   film.images = 40;
