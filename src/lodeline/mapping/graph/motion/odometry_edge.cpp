@@ -26,14 +26,15 @@ Mat6 OdometryFloor::covariance(double path_m) const {
 
 namespace {
 
-/// Raises the eigenvalues of a covariance relative to a diagonal floor to at least one.
-Mat6 raisedTo(const Mat6& floor, const Mat6& covariance) {
+/// The covariance of the relative pose from the growth of the covariance, P_j - A P_i A^T: its eigenvalues
+/// relative to a diagonal floor by their size, and at least one. Where the covariance fell, the estimate
+/// was corrected: the correction of an optimal estimator has the covariance by which that of its error falls.
+Mat6 covarianceOfChange(const Mat6& floor, const Mat6& growth) {
   const Vec6 sigmas = floor.diagonal().cwiseSqrt();
   const Vec6 inverse = sigmas.cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Mat6> relative(inverse.asDiagonal() * covariance *
-                                                     inverse.asDiagonal());
+  const Eigen::SelfAdjointEigenSolver<Mat6> relative(inverse.asDiagonal() * growth * inverse.asDiagonal());
   const Mat6 axes = sigmas.asDiagonal() * relative.eigenvectors();
-  return axes * relative.eigenvalues().cwiseMax(1.0).asDiagonal() * axes.transpose();
+  return axes * relative.eigenvalues().cwiseAbs().cwiseMax(1.0).asDiagonal() * axes.transpose();
 }
 
 void checkOdometry(const MapKeyframe& keyframe) {
@@ -62,11 +63,11 @@ RelativePose odometryEdge(const MapKeyframe& previous, const MapKeyframe& next, 
   to_body.topLeftCorner<3, 3>() = previous.odom_from_body.rotation.conjugate().toRotationMatrix();
   to_body.bottomRightCorner<3, 3>() = to_body.topLeftCorner<3, 3>();
 
-  const Mat6 arisen_W = next.covariance - carried * previous.covariance * carried.transpose();
-  const Mat6 symmetric_W = 0.5 * (arisen_W + arisen_W.transpose());
+  const Mat6 growth_W = next.covariance - carried * previous.covariance * carried.transpose();
+  const Mat6 symmetric_W = 0.5 * (growth_W + growth_W.transpose());
   return {previous.odom_from_body.inverse() * next.odom_from_body,
-          raisedTo(floor.covariance(std::max(path_m, way_W.norm())),
-                   to_body * symmetric_W * to_body.transpose())};
+          covarianceOfChange(floor.covariance(std::max(path_m, way_W.norm())),
+                             to_body * symmetric_W * to_body.transpose())};
 }
 
 }  // namespace lodeline
