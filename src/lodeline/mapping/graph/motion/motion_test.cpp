@@ -95,7 +95,7 @@ TEST(OdometryEdge, AddsNothingForTheHeadingErrorBefore) {
   EXPECT_LT(relativeDifference(found.covariance, edge.covariance), 1e-9);
 }
 
-TEST(OdometryEdge, HasTheCovarianceOfACorrection) {
+TEST(OdometryFactor, HasTheCovarianceOfACorrection) {
   // A reading of all six values with the covariance N corrects an estimate with the covariance P.
   const Mat6 P = 2.0 * unequalCovariance();
   const Mat6 N = 0.5 * unequalCovariance() + 0.02 * Mat6::Identity();
@@ -117,8 +117,11 @@ TEST(OdometryEdge, HasTheCovarianceOfACorrection) {
   Mat6 to_body = Mat6::Zero();
   to_body.topLeftCorner<3, 3>() = to_body.bottomRightCorner<3, 3>() =
       kFirst.rotation.conjugate().toRotationMatrix();
-  const Mat6 found = odometryEdge(keyframeAt(0, kFirst, P), keyframeAt(1, kFirst, after)).covariance;
-  EXPECT_LT(relativeDifference(to_body * sum * to_body.transpose(), found), 0.04);
+  const MapKeyframe first = keyframeAt(0, kFirst, P), next = keyframeAt(1, kFirst, after);
+  EXPECT_LT(relativeDifference(to_body * sum * to_body.transpose(), odometryFactor(first, next).covariance),
+            0.04);
+  // What arises is nothing, and the end of a chain has the covariance of what was left.
+  EXPECT_LT(odometryEdge(first, next).covariance.norm(), 1e-3 * after.norm());
 }
 
 TEST(OdometryEdge, IsAtLeastTheFloor) {
@@ -129,10 +132,23 @@ TEST(OdometryEdge, IsAtLeastTheFloor) {
     const Mat6 found = odometryEdge(before, after, 7.0).covariance;
     const Eigen::GeneralizedSelfAdjointEigenSolver<Mat6> relative(found, floor.covariance(7.0));
     EXPECT_GT(relative.eigenvalues().minCoeff(), 1.0 - 1e-9) << share;
+    const Mat6 of_factor =
+        odometryFactor(before, keyframeAt(1, kFirst, share * before.covariance)).covariance;
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Mat6> at_rest(of_factor, floor.covariance(0.0));
+    EXPECT_GT(at_rest.eigenvalues().minCoeff(), 1.0 - 1e-9) << share;
   }
   // A rig at rest keeps a positive definite covariance.
   const Mat6 at_rest = odometryEdge(before, keyframeAt(1, kFirst, before.covariance)).covariance;
   EXPECT_LT(relativeDifference(at_rest, floor.covariance(0.0)), 1e-6);
+}
+
+TEST(OdometryFactor, IsTheEdgeWhereTheCovarianceGrows) {
+  const RelativePose edge{kSecond, unequalCovariance()};
+  const Mat6 before = 3.0 * unequalCovariance();
+  const MapKeyframe first = keyframeAt(0, kFirst, before);
+  const MapKeyframe next = keyframeAt(1, kFirst * kSecond, propagated(kFirst, before, edge));
+  EXPECT_LT(relativeDifference(odometryFactor(first, next).covariance, odometryEdge(first, next).covariance),
+            1e-9);
 }
 
 TEST(OdometryEdge, RefusesKeyframesThatOdometryDoesNotConnect) {
