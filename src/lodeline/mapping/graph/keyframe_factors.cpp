@@ -84,7 +84,7 @@ void addKeyframe(const MapKeyframe& keyframe, const MapKeyframe* previous, PoseG
   }
   std::optional<RelativePose> odometry;
   if (previous) {
-    odometry = odometryEdge(*previous, keyframe, 0.0, options.odometry);
+    odometry = odometryFactor(*previous, keyframe, options.odometry);
     graph->addNode(keyframe.id, keyframe.dive, graph->pose(previous->id) * odometry->from_from_to);
     graph->add(GraphEdge{previous->id, keyframe.id, *odometry, false});
   } else {

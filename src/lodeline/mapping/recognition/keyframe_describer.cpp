@@ -138,7 +138,16 @@ void addDescriptors(const EvenedImage& image, const Camera& camera, const Vec3& 
   *features = std::move(described);
 }
 
-/// The values of a keyframe beside its features.
+/// The magnetic field at the estimator's newest frame.
+std::optional<KeyframeField> fieldOf(const Estimator& estimator) {
+  if (!estimator.initialized()) return std::nullopt;
+  const auto* reading = estimator.window().newest().measurements.find<FieldReading>();
+  if (reading == nullptr) return std::nullopt;
+  return KeyframeField{reading->field_B, reading->sigma_T};
+}
+
+}  // namespace
+
 MapKeyframe keyframeOf(const FrameEstimate& estimate) {
   MapKeyframe keyframe;
   keyframe.time = estimate.time;
@@ -155,16 +164,6 @@ MapKeyframe keyframeOf(const FrameEstimate& estimate) {
   }
   return keyframe;
 }
-
-/// The magnetic field at the estimator's newest frame.
-std::optional<KeyframeField> fieldOf(const Estimator& estimator) {
-  if (!estimator.initialized()) return std::nullopt;
-  const auto* reading = estimator.window().newest().measurements.find<FieldReading>();
-  if (reading == nullptr) return std::nullopt;
-  return KeyframeField{reading->field_B, reading->sigma_T};
-}
-
-}  // namespace
 
 void KeyframeDescriberOptions::check() const {
   OptionCheck("keyframe_describer").atLeast("features", features, 1).positive("blob_sigma_px", blob_sigma_px);

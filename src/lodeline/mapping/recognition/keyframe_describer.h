@@ -16,6 +16,9 @@ struct KeyframeDescriberOptions {
   void check() const;
 };
 
+/// The values of a keyframe beside its features and its field: time, odometry, heading and depth.
+MapKeyframe keyframeOf(const FrameEstimate& estimate);
+
 /// Makes the keyframe of a map from one frame: tracked points and blobs of camera 0, their descriptors, rays
 /// and positions.
 ///

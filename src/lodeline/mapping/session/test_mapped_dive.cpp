@@ -1,11 +1,14 @@
 #include "lodeline/mapping/session/test_mapped_dive.h"
 
 #include <cmath>
+#include <utility>
 
 #include "lodeline/cameras/camera.h"
 #include "lodeline/estimator/trials/scene.h"
 #include "lodeline/geometry/so3.h"
+#include "lodeline/mapping/graph/motion/relative_pose.h"
 #include "lodeline/mapping/recognition/frame_geometry.h"
+#include "lodeline/mapping/recognition/keyframe_describer.h"
 #include "lodeline/mapping/session/keyframe_choice.h"
 #include "lodeline/mapping/session/loops/loop_closures.h"
 #include "simulation/dive/point_dive.h"
@@ -55,10 +58,7 @@ class KeyframeMaker {
   MapKeyframe make(const FrameTracks& tracks, const FrameEstimate& estimate, const Estimator& estimator,
                    const PointSimulation& simulation) {
     const FrameGeometry geometry = frameGeometry(estimator, cameras_, tracks);
-    MapKeyframe keyframe;
-    keyframe.time = estimate.time;
-    keyframe.odom_from_body = estimate.state.world_from_body;
-    keyframe.covariance = estimate.covariance.topLeftCorner<6, 6>();
+    MapKeyframe keyframe = keyframeOf(estimate);
     for (const FeatureObservation& seen : tracks.observations) {
       const auto ray = geometry.rayOf(seen.camera, seen.pixel, seen.sigma_px);
       if (!ray) continue;
@@ -137,31 +137,45 @@ class TagViewer {
   std::vector<LineTag> tags_;
 };
 
-}  // namespace
-
-MappedDive::MappedDive(const MappedDiveOptions& wanted, const std::filesystem::path& file,
-                       const MapFile* earlier) {
+MappedScene sceneOf(const MappedDiveOptions& wanted) {
   MountedRig mounted = standardRig({});
   const ImuErrors imu = drawImuErrors(imuGrade("gx5-25"), {}, wanted.dive_seed);
   mounted.rig.imu.noise = statedNoise(imu);
   DiveMotionOptions motion;
   motion.seed = wanted.dive_seed;
   motion.duration_s = (wanted.cave.path_length_m + 22.0) / wanted.speed_m_per_s;
-  const PointDive dive = makeCaveDive(wanted.cave, motion, mounted, imu);
-  cave_origin_W = dive.cave_origin_W;
-  rig = givenRig(dive.mounted.rig, wanted);
+  PointDive dive = makeCaveDive(wanted.cave, motion, mounted, imu);
   PointSimulationOptions points;
   points.seed = wanted.dive_seed;
   points.frame_rate_hz = wanted.frame_rate_hz;
   points.tracks = wanted.tracks;
   points.imu = imu;
-  PointSimulation simulation(dive.motion, dive.landmarks, dive.mounted.rig, rig, points);
+  return {std::move(dive.motion),
+          std::move(dive.landmarks),
+          dive.mounted.rig,
+          givenRig(dive.mounted.rig, wanted),
+          points,
+          dive.cave_origin_W};
+}
+
+}  // namespace
+
+MappedDive::MappedDive(const MappedDiveOptions& wanted, const std::filesystem::path& file,
+                       const MapFile* earlier)
+    : MappedDive(sceneOf(wanted), wanted, file, earlier) {}
+
+MappedDive::MappedDive(const MappedScene& scene, const MappedDiveOptions& wanted,
+                       const std::filesystem::path& file, const MapFile* earlier) {
+  cave_origin_W = scene.cave_origin_W;
+  rig = scene.given_rig;
+  options = wanted.estimator;
+  PointSimulation simulation(scene.motion, scene.landmarks, scene.true_rig, rig, scene.points);
   Diagnostics diagnostics;
   Estimator estimator(rig, options, &diagnostics);
   TruthComparison comparison;
   KeyframeChoice choice(KeyframeChoiceOptions{});
   KeyframeMaker maker(rig, wanted);
-  TagViewer viewer(dive.mounted.rig, wanted);
+  TagViewer viewer(scene.true_rig, wanted);
   MapFile own = MapFile::create(file, {});
   MapDive row;
   row.name = file.stem().string();
@@ -171,7 +185,8 @@ MappedDive::MappedDive(const MappedDiveOptions& wanted, const std::filesystem::p
   std::map<KeyframeId, Rigid3> true_in_odometry;
   Time last;
   while (const auto frame = simulation.next()) {
-    const FrameEstimate estimate = estimator.add(frame->tracks, frame->imu);
+    const FrameEstimate estimate =
+        estimator.add(frame->tracks, frame->imu, SensorReadings(frame->magnetometer));
     record.add(frame->tracks, frame->imu, estimate, estimator);
     const Comparison compared = comparison.compare(*frame, estimate, estimator);
     if (!compared.initialized()) continue;
@@ -190,6 +205,7 @@ MappedDive::MappedDive(const MappedDiveOptions& wanted, const std::filesystem::p
       map_from_odom = step.map_from_odom;
       placed = step.is_placed;
     }
+    times.push_back(estimate.time);
     truth.push_back(compared.true_world_from_body);
     true_in_simulation.push_back(frame->truth.motion.world_from_body);
     odometry.push_back(estimate.state.world_from_body);
@@ -205,6 +221,11 @@ MappedDive::MappedDive(const MappedDiveOptions& wanted, const std::filesystem::p
     const Rigid3 true_relative =
         true_in_odometry.at(loop.old_keyframe).inverse() * true_in_odometry.at(loop.new_keyframe);
     loop_errors_m.push_back((true_relative.translation - loop.old_from_new.translation).norm());
+    loop_errors_squared.push_back(mahalanobisSquared(loop.old_from_new, true_relative, loop.covariance));
+  }
+  for (const VerifiedLoop& verified : accepted) {
+    const Time closed = mapping.known().at(verified.loop.new_keyframe).time;
+    if (!first_loop || closed < *first_loop) first_loop = closed;
   }
 }
 

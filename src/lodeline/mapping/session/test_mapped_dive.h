@@ -2,11 +2,13 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "lodeline/batch/estimator_log.h"
 #include "lodeline/batch/loops/loop_observation.h"
 #include "lodeline/mapping/session/dive_mapping.h"
+#include "simulation/dive/point_simulation.h"
 #include "simulation/plan/cave_plan.h"
 
 namespace lodeline {
@@ -28,12 +30,25 @@ struct MappedDiveOptions {
   int tags = 0;
   std::map<int, int> tag_numbers;
   bool recognizes_places = true;  ///< false: keyframes have no features, as in silt
+  EstimatorOptions estimator;
   MappingOptions mapping;
+};
+
+/// What a dive of points is simulated from: motion, points, rigs and the errors of all readings.
+struct MappedScene {
+  Motion motion;
+  LandmarkField landmarks;
+  Rig true_rig, given_rig;
+  PointSimulationOptions points;
+  Vec3 cave_origin_W = Vec3::Zero();  ///< p_W = p_cave + cave_origin_W
 };
 
 struct MappedDive {
   /// Writes `file`, the map of the dive. `earlier`: map to start from; null for none.
   MappedDive(const MappedDiveOptions& options, const std::filesystem::path& file, const MapFile* earlier);
+  /// The same in a given scene, in place of that of the options.
+  MappedDive(const MappedScene& scene, const MappedDiveOptions& options, const std::filesystem::path& file,
+             const MapFile* earlier);
 
   Rig rig;  ///< as given to the estimator
   EstimatorOptions options;
@@ -41,6 +56,7 @@ struct MappedDive {
   /// Of every frame with a pose: the truth and the odometry in the estimator's world, and the causal map
   /// pose.
   std::vector<Rigid3> truth, odometry, in_map;
+  std::vector<Time> times;  ///< of the same frames
   std::vector<bool> is_placed;
   Vec3 cave_origin_W = Vec3::Zero();       ///< p_W = p_cave + cave_origin_W in the simulator's world
   std::vector<Rigid3> true_in_simulation;  ///< true poses in the simulator's world, same frames
@@ -49,9 +65,10 @@ struct MappedDive {
   std::map<KeyframeId, Rigid3> true_poses;  ///< of the keyframes, in the frame of the cave
   std::vector<VerifiedLoop> accepted;
   LoopClosures closures;
-  /// Distance between the true positions of the keyframes of each accepted loop within the dive, and the
-  /// error of its relative position, m.
-  std::vector<double> loop_errors_m;
+  /// Error of the relative position of each accepted loop within the dive, m, and the squared error of its
+  /// relative pose by its covariance (6 degrees of freedom).
+  std::vector<double> loop_errors_m, loop_errors_squared;
+  std::optional<Time> first_loop;  ///< time of the keyframe that closed the first accepted loop
 };
 
 /// Root mean square of the distances between positions.

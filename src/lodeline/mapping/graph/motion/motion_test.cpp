@@ -95,17 +95,60 @@ TEST(OdometryEdge, AddsNothingForTheHeadingErrorBefore) {
   EXPECT_LT(relativeDifference(found.covariance, edge.covariance), 1e-9);
 }
 
-TEST(OdometryEdge, IsAtLeastTheFloorWhereTheCovarianceFalls) {
-  const MapKeyframe before = keyframeAt(0, kFirst, unequalCovariance());
-  const MapKeyframe after = keyframeAt(1, kFirst * kSecond, 0.1 * unequalCovariance());
+TEST(OdometryFactor, HasTheCovarianceOfACorrection) {
+  // A reading of all six values with the covariance N corrects an estimate with the covariance P.
+  const Mat6 P = 2.0 * unequalCovariance();
+  const Mat6 N = 0.5 * unequalCovariance() + 0.02 * Mat6::Identity();
+  const Mat6 gain = P * (P + N).inverse();
+  const Mat6 after = P - gain * P;
+  const Eigen::LLT<Mat6> of_error(P), of_reading(N);
+  std::mt19937_64 generator(4);
+  std::normal_distribution<double> normal;
+  Mat6 sum = Mat6::Zero();
+  constexpr int kDraws = 20000;
+  for (int i = 0; i < kDraws; ++i) {
+    Vec6 error, noise;
+    for (int k = 0; k < 6; ++k) error[k] = normal(generator), noise[k] = normal(generator);
+    error = of_error.matrixL() * error;
+    noise = of_reading.matrixL() * noise;
+    const Vec6 correction = gain * (error + noise);
+    sum += correction * correction.transpose() / kDraws;
+  }
+  Mat6 to_body = Mat6::Zero();
+  to_body.topLeftCorner<3, 3>() = to_body.bottomRightCorner<3, 3>() =
+      kFirst.rotation.conjugate().toRotationMatrix();
+  const MapKeyframe first = keyframeAt(0, kFirst, P), next = keyframeAt(1, kFirst, after);
+  EXPECT_LT(relativeDifference(to_body * sum * to_body.transpose(), odometryFactor(first, next).covariance),
+            0.04);
+  // What arises is nothing, and the end of a chain has the covariance of what was left.
+  EXPECT_LT(odometryEdge(first, next).covariance.norm(), 1e-3 * after.norm());
+}
+
+TEST(OdometryEdge, IsAtLeastTheFloor) {
   const OdometryFloor floor;
-  const Mat6 least = floor.covariance(7.0);
-  const Mat6 found = odometryEdge(before, after, 7.0).covariance;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Mat6> relative(found, least);
-  EXPECT_GT(relative.eigenvalues().minCoeff(), 1.0 - 1e-9);
+  const MapKeyframe before = keyframeAt(0, kFirst, unequalCovariance());
+  for (const double share : {0.1, 1.0 - 1e-7, 1.0 + 1e-7}) {
+    const MapKeyframe after = keyframeAt(1, kFirst * kSecond, share * unequalCovariance());
+    const Mat6 found = odometryEdge(before, after, 7.0).covariance;
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Mat6> relative(found, floor.covariance(7.0));
+    EXPECT_GT(relative.eigenvalues().minCoeff(), 1.0 - 1e-9) << share;
+    const Mat6 of_factor =
+        odometryFactor(before, keyframeAt(1, kFirst, share * before.covariance)).covariance;
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Mat6> at_rest(of_factor, floor.covariance(0.0));
+    EXPECT_GT(at_rest.eigenvalues().minCoeff(), 1.0 - 1e-9) << share;
+  }
   // A rig at rest keeps a positive definite covariance.
   const Mat6 at_rest = odometryEdge(before, keyframeAt(1, kFirst, before.covariance)).covariance;
   EXPECT_LT(relativeDifference(at_rest, floor.covariance(0.0)), 1e-6);
+}
+
+TEST(OdometryFactor, IsTheEdgeWhereTheCovarianceGrows) {
+  const RelativePose edge{kSecond, unequalCovariance()};
+  const Mat6 before = 3.0 * unequalCovariance();
+  const MapKeyframe first = keyframeAt(0, kFirst, before);
+  const MapKeyframe next = keyframeAt(1, kFirst * kSecond, propagated(kFirst, before, edge));
+  EXPECT_LT(relativeDifference(odometryFactor(first, next).covariance, odometryEdge(first, next).covariance),
+            1e-9);
 }
 
 TEST(OdometryEdge, RefusesKeyframesThatOdometryDoesNotConnect) {

@@ -26,14 +26,14 @@ Mat6 OdometryFloor::covariance(double path_m) const {
 
 namespace {
 
-/// Raises the eigenvalues of a covariance relative to a diagonal floor to at least one.
-Mat6 raisedTo(const Mat6& floor, const Mat6& covariance) {
+/// Eigenvalues of a change of the covariance relative to the floor, as `count` takes them, and at least one.
+template <typename Count>
+Mat6 raisedTo(const Mat6& floor, const Mat6& growth, const Count& count) {
   const Vec6 sigmas = floor.diagonal().cwiseSqrt();
   const Vec6 inverse = sigmas.cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Mat6> relative(inverse.asDiagonal() * covariance *
-                                                     inverse.asDiagonal());
+  const Eigen::SelfAdjointEigenSolver<Mat6> relative(inverse.asDiagonal() * growth * inverse.asDiagonal());
   const Mat6 axes = sigmas.asDiagonal() * relative.eigenvectors();
-  return axes * relative.eigenvalues().cwiseMax(1.0).asDiagonal() * axes.transpose();
+  return axes * relative.eigenvalues().unaryExpr(count).cwiseMax(1.0).asDiagonal() * axes.transpose();
 }
 
 void checkOdometry(const MapKeyframe& keyframe) {
@@ -44,10 +44,10 @@ void checkOdometry(const MapKeyframe& keyframe) {
   }
 }
 
-}  // namespace
-
-RelativePose odometryEdge(const MapKeyframe& previous, const MapKeyframe& next, double path_m,
-                          const OdometryFloor& floor) {
+/// The relative pose with the change of the covariance between both.
+template <typename Count>
+RelativePose relativePose(const MapKeyframe& previous, const MapKeyframe& next, double path_m,
+                          const OdometryFloor& floor, const Count& count) {
   floor.check();
   checkOdometry(previous);
   checkOdometry(next);
@@ -62,11 +62,23 @@ RelativePose odometryEdge(const MapKeyframe& previous, const MapKeyframe& next, 
   to_body.topLeftCorner<3, 3>() = previous.odom_from_body.rotation.conjugate().toRotationMatrix();
   to_body.bottomRightCorner<3, 3>() = to_body.topLeftCorner<3, 3>();
 
-  const Mat6 arisen_W = next.covariance - carried * previous.covariance * carried.transpose();
-  const Mat6 symmetric_W = 0.5 * (arisen_W + arisen_W.transpose());
+  const Mat6 growth_W = next.covariance - carried * previous.covariance * carried.transpose();
+  const Mat6 symmetric_W = 0.5 * (growth_W + growth_W.transpose());
   return {previous.odom_from_body.inverse() * next.odom_from_body,
           raisedTo(floor.covariance(std::max(path_m, way_W.norm())),
-                   to_body * symmetric_W * to_body.transpose())};
+                   to_body * symmetric_W * to_body.transpose(), count)};
+}
+
+}  // namespace
+
+RelativePose odometryEdge(const MapKeyframe& previous, const MapKeyframe& next, double path_m,
+                          const OdometryFloor& floor) {
+  return relativePose(previous, next, path_m, floor, [](double growth) { return growth; });
+}
+
+RelativePose odometryFactor(const MapKeyframe& previous, const MapKeyframe& next,
+                            const OdometryFloor& floor) {
+  return relativePose(previous, next, 0.0, floor, [](double growth) { return std::abs(growth); });
 }
 
 }  // namespace lodeline

@@ -20,7 +20,7 @@ struct OdometryFloor {
 };
 
 /// Relative pose of two keyframes of one dive by odometry, with the part of the covariance that arose between
-/// them.
+/// them. Sums of these along a way (OdometryChain) are the covariance of its ends.
 ///
 /// Let e_i = [dp, dtheta] be the error of pose i in world axes and d = p_j - p_i. The relative pose has the
 /// error R_i^T (e_j - A e_i) in axes of i, where A = [I, -[d]x; 0, I] carries an error of i along the path:
@@ -36,5 +36,16 @@ struct OdometryFloor {
 /// Throws InputError for keyframes of two dives and for poses or covariances that are not finite.
 RelativePose odometryEdge(const MapKeyframe& previous, const MapKeyframe& next, double path_m = 0.0,
                           const OdometryFloor& floor = {});
+
+/// The same for a factor of neighbouring keyframes, with the covariance of its error.
+///
+/// Where readings or old landmarks lower the covariance, they correct the estimate, and the relative pose
+/// contains the correction. The correction of an optimal estimator does not correlate with the error that it
+/// leaves (Bar-Shalom, Li and Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001), so
+/// it has the covariance A P_i A^T - P_j. The sizes of the eigenvalues therefore count:
+/// Q = L max(|L^-1 Q L^-T|, 1) L^T. Over a longer way, corrections take back the errors before them. So sums
+/// of these are too large there.
+RelativePose odometryFactor(const MapKeyframe& previous, const MapKeyframe& next,
+                            const OdometryFloor& floor = {});
 
 }  // namespace lodeline
