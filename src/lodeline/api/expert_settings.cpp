@@ -7,9 +7,6 @@ void bindSource(Settings* settings, SynchronizerOptions* synchronizer) {
   settings->bind("expert.source.camera_match_tolerance_s", &synchronizer->match_tolerance_s,
                  "An image of a secondary camera belongs to an image of the first camera when their times "
                  "differ by no more than this. Half a frame period is the limit in any case.");
-  settings->bind("expert.source.prefetch", &synchronizer->prefetch,
-                 "Decode the next images on other threads while the estimator works. The results are the "
-                 "same without it.");
 }
 
 void bindFrontEnd(Settings* settings, OdometryOptions* odometry) {
@@ -112,8 +109,6 @@ void bindSolver(Settings* settings, EstimatorOptions* options) {
                  "Weight the observations of a track by the errors of that track.");
   settings->bind("expert.zero_velocity.enabled", &options->rest.enabled,
                  "Detect a rig at rest and use a velocity of zero as a measurement.");
-  settings->bind("expert.min_landmarks_for_vision", &options->min_landmarks_for_vision,
-                 "A frame with fewer landmarks in view has the status `inertial`.");
 }
 
 void bindMagnetometer(Settings* settings, MagnetometerOptions* options) {
