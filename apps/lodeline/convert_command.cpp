@@ -4,6 +4,7 @@
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -103,6 +104,17 @@ ConvertSummary convertEitherWay(const ConvertArguments& arguments, Diagnostics* 
                 : convertFolderToFolder(arguments.source, arguments.target, options, diagnostics);
 }
 
+/// Reports a part that has readings and no image: images may begin later than the other readings.
+void reportPartWithoutImages(const RecordingPart& part, const ConvertSummary& summary,
+                             Diagnostics* diagnostics) {
+  const auto is_image = [](const auto& of_sensor) {
+    return of_sensor.first.starts_with("cam") && of_sensor.second > 0;
+  };
+  if (part.isAll() || std::any_of(summary.readings.begin(), summary.readings.end(), is_image)) return;
+  diagnostics->report(Severity::Warning, "part_without_images",
+                      "the part of the recording has no image; times count from its first reading");
+}
+
 void convert(const ConvertArguments& arguments) {
   Diagnostics diagnostics;
   if (arguments.overwrite) removeTarget(arguments.source, arguments.target);
@@ -111,6 +123,7 @@ void convert(const ConvertArguments& arguments) {
     throw InputError(
         fmt::format("{}: nothing in it could be converted\n{}", arguments.source, findingsText(diagnostics)));
   }
+  reportPartWithoutImages(arguments.part, summary, &diagnostics);
   if (!arguments.verbosity.quiet) {
     fmt::print("{}\n", arguments.target);
     for (const auto& [sensor, count] : summary.readings) fmt::print("  {:<12}{:>9}\n", sensor, count);

@@ -195,6 +195,20 @@ TEST_F(BagTest, ConvertsAPartInAllDirections) {
             2);
 }
 
+TEST_F(BagTest, APartWithoutImagesIsNamed) {
+  // The images begin 0.5 s after the inertial readings.
+  for (const char* to : {"blind.bag", "blind_folder"}) {
+    const auto convert = [&](const std::string& part) {
+      return runProgram(
+          fmt::format("convert {} {} --overwrite {}", quoted(recording_.data), quoted(path(to)), part));
+    };
+    const Execution blind = convert("--from 0 --to 0.3");
+    EXPECT_EQ(blind.exit_code, 0) << blind.output;
+    EXPECT_THAT(blind.output, HasSubstr("has no image"));
+    EXPECT_THAT(convert("--from 0 --to 0.8").output, Not(HasSubstr("has no image")));
+  }
+}
+
 TEST_F(BagTest, ConvertsAFolderToAFolderWithoutLoss) {
   addSmallSensors();
   folder_.write("room/mav0/leica0/data.csv", "#timestamp, x\r\n1000000000000, 1.50\r\n1000700000000,2e0\r\n");
