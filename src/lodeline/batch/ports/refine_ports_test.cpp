@@ -75,8 +75,8 @@ TEST(RefinePort, KeepsWhatTheFileStatesRightly) {
 
 TEST(RefinePort, IsHeldWithTheLens) {
   PortDiveOptions dive;
-  dive.seconds = 20.0;
-  dive.metres = 6.0;
+  dive.seconds = 40.0;
+  dive.metres = 8.0;
   EstimatorOptions options;
   options.camera_calibration.intrinsics = false;
   const PortDive run(dive, options);
