@@ -1,6 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
 
 #include "lodeline/evaluation/trajectory/test_trajectories.h"
 #include "lodeline/output/report/page/report_page.h"
@@ -96,17 +102,56 @@ TEST_F(Browser, ComparesTwoRuns) {
                               pageOf({folder_.path() / "first", folder_.path() / "second"}, std::nullopt)));
 }
 
-TEST_F(Browser, OpensFiftyMinutesFrom15Megabytes) {
+/// Fifty minutes at 15 Hz.
+test::TestRun longDive() {
   test::TestRun dive;
   dive.frames = 50 * 60 * 15;
   dive.landmarks_per_frame = 4;
   dive.pictures = 99;
   dive.picture_width_px = 640;
-  test::writeTestRun(folder_.path() / "dive", dive);
+  return dive;
+}
+
+/// Writes a coloured cloud of points spread over 100 m.
+void writeCloud(const std::filesystem::path& file, uint32_t points) {
+  std::ofstream stream(file, std::ios::binary);
+  stream << "ply\nformat binary_little_endian 1.0\nelement vertex " << points
+         << "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar "
+            "green\nproperty uchar blue\nend_header\n";
+  std::mt19937 random(1);
+  for (uint32_t i = 0; i < points; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const float value_m = 1e-4F * static_cast<float>(random() % 1000000);
+      stream.write(reinterpret_cast<const char*>(&value_m), sizeof(value_m));
+    }
+    const auto colour = static_cast<uint32_t>(random());
+    stream.write(reinterpret_cast<const char*>(&colour), 3);
+  }
+}
+
+TEST_F(Browser, OpensFiftyMinutesFrom15Megabytes) {
+  test::writeTestRun(folder_.path() / "dive", longDive());
   const std::filesystem::path page = pageOf({folder_.path() / "dive"}, std::nullopt);
   const auto size = std::filesystem::file_size(page);
   printf("%.1f MB\n", 1e-6 * static_cast<double>(size));
   EXPECT_LE(size, 15'000'000u);
+  EXPECT_TRUE(passesInBrowser("opening_time.mjs", page));
+}
+
+TEST_F(Browser, OpensThreeLongDivesWithTwoMillionPointsFrom40Megabytes) {
+  test::writeTestRun(folder_.path() / "dive0", longDive());
+  std::vector<std::filesystem::path> dives;
+  for (int i = 0; i < 3; ++i) {
+    dives.push_back(folder_.path() / ("dive" + std::to_string(i)));
+    if (i > 0)
+      std::filesystem::copy(dives[0], dives[static_cast<size_t>(i)],
+                            std::filesystem::copy_options::recursive);
+  }
+  for (const std::filesystem::path& dive : dives) writeCloud(dive / "walls.ply", 667'000);
+  const std::filesystem::path page = pageOf(dives, std::nullopt);
+  const auto size = std::filesystem::file_size(page);
+  printf("%.1f MB\n", 1e-6 * static_cast<double>(size));
+  EXPECT_LE(size, 40'000'000u);
   EXPECT_TRUE(passesInBrowser("opening_time.mjs", page));
 }
 
