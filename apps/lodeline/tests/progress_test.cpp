@@ -48,7 +48,7 @@ TEST_F(ProgressTest, OfWorkOnARecording) {
       "evaluate " + out + " " + truth + " --plots " + file("plots") + " --html " + file("page.html"),
       {"evaluation", "plots", "page"});
   expectProgress("report " + out + " -o " + file("report.html"), {"page"});
-  expectProgress("export " + out + " -o " + file("export"), {"files"});
+  expectProgress("export " + out + " --format csv,ply -o " + file("export"), {"files"});
   if (hasOpen3d())
     expectProgress("walls " + out + " -o " + file("walls") + " --step 0.04 --voxel 0.04",
                    {"depths", "files"});
@@ -61,7 +61,7 @@ TEST_F(ProgressTest, OfMaps) {
   expectProgress("map solve " + map, {"solving"});
   folder_.write("cave.yaml", "dives:\n  - {run: " + output_.string() + "}\n");
   expectProgress("survey " + file("cave.yaml") + " -o " + file("survey"), {"joining dives", "solving"});
-  expectProgress("map export " + map + " -o " + file("files"), {"files"});
+  expectProgress("map export " + map + " --format csv,ply -o " + file("files"), {"files"});
 }
 
 TEST_F(ProgressTest, OfManyRuns) {
