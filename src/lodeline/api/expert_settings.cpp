@@ -7,6 +7,9 @@ void bindSource(Settings* settings, SynchronizerOptions* synchronizer) {
   settings->bind("expert.source.camera_match_tolerance_s", &synchronizer->match_tolerance_s,
                  "An image of a secondary camera belongs to an image of the first camera when their times "
                  "differ by no more than this. Half a frame period is the limit in any case.");
+  settings->bind("expert.source.prefetch", &synchronizer->prefetch,
+                 "Decode the next images on other threads while the estimator works. The results are the "
+                 "same without it.");
 }
 
 void bindFrontEnd(Settings* settings, OdometryOptions* odometry) {
