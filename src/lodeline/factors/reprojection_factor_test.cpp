@@ -71,9 +71,7 @@ TEST(ReprojectionFactor, IsInvariantUnderAnyMotionOfTheWorld) {
   Scene scene;
   const auto factor = scene.factor(scene.measurement(scene.pointInTarget() + Vec3(0.05, 0.0, 0.0)));
   const Vec2 before = evaluate(factor, scene.parameters());
-  const Rigid3 moved(so3::exp(Vec3(0.5, -2.0, 0.7)), Vec3(30, -20, 10));
-  scene.world_from_host = moved * scene.world_from_host;
-  scene.world_from_target = moved * scene.world_from_target;
+  scene.moveWorld();
   EXPECT_LT((evaluate(factor, scene.parameters()) - before).norm(), 1e-9);
 }
 

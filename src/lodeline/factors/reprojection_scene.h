@@ -47,6 +47,13 @@ struct ReprojectionScene {
     return Vec3(ab.x(), ab.y(), 1.0 / depth);
   }
 
+  /// Moves both poses by the same rotation and translation of the world.
+  void moveWorld() {
+    const Rigid3 moved_from_world(so3::exp(Vec3(0.5, -2.0, 0.7)), Vec3(30, -20, 10));
+    world_from_host = moved_from_world * world_from_host;
+    world_from_target = moved_from_world * world_from_target;
+  }
+
   DirectionMeasurement measurement(const Vec3& point_C, double sigma_px = 0.7) const {
     return DirectionMeasurement::fromBearing(*camera, point_C.normalized(), sigma_px);
   }

@@ -133,9 +133,7 @@ TEST_P(PortReprojection, IsInvariantUnderAnyMotionOfTheWorld) {
   for (PortScene scene : scenes()) {
     const auto factor = scene.plain(Vec2(2.0, -1.0));
     const Vec2 before = evaluate(factor, scene.poses());
-    const Rigid3 moved(so3::exp(Vec3(0.5, -2.0, 0.7)), Vec3(30, -20, 10));
-    scene.world_from_host = moved * scene.world_from_host;
-    scene.world_from_target = moved * scene.world_from_target;
+    scene.moveWorld();
     EXPECT_LT((evaluate(factor, scene.poses()) - before).norm(), 1e-9);
   }
 }
@@ -249,9 +247,7 @@ TEST_P(MovedPort, IsInvariantUnderAnyMotionOfTheWorld) {
   for (MovedPortScene scene : scenes()) {
     const auto factor = scene.calibratedPort(Vec2(2.0, -1.0));
     const Vec2 before = evaluate(factor, scene.withPort());
-    const Rigid3 moved(so3::exp(Vec3(0.5, -2.0, 0.7)), Vec3(30, -20, 10));
-    scene.world_from_host = moved * scene.world_from_host;
-    scene.world_from_target = moved * scene.world_from_target;
+    scene.moveWorld();
     EXPECT_LT((evaluate(factor, scene.withPort()) - before).norm(), 1e-8);
   }
 }
