@@ -155,14 +155,12 @@ def settings_page(config):
     rows = [f"| `{name}` | `{default}` | {words.replace('|', '/')} |" for name, default, words in settings_of(config)]
     page = ["# Settings", "",
             "*The script `scripts/generate_reference.py` writes this page from the settings of the program.*", "",
-            "The defaults serve all recordings. Change a setting on the command line, `--set source.duration_s=60`,",
-            "or in a YAML file, `-c config.yaml`. The command line goes over the file. `-c` with the `config.yaml` of an",
-            "output folder repeats its run. The unit of a setting is the end of its name. A `sigma` is one standard",
-            "deviation.", "",
+            "The defaults serve all recordings. Change a setting on the command line, `--set source.duration_s=60`, or in a",
+            "YAML file, `-c config.yaml`. The command line goes over the file. The end of a name is the unit. A `sigma` is",
+            "one standard deviation.", "",
             "| setting | default | meaning |", "| --- | --- | --- |", *rows, "", "## Expert settings", "",
-            "`lodeline settings --expert` also prints the settings that only experiments need. `expert.` may be left out of a",
-            "name: `--set window.keyframes=10`. An IMU counts as calibrated by its maker when `axes_sigma` of its calibration",
-            "is below 0.002."]
+            "`lodeline settings --expert` also prints the settings that only experiments need. `expert.` may be left out of",
+            "a name: `--set window.keyframes=10`. They count an IMU as calibrated where `axes_sigma` is below 0.002."]
     return "\n".join(page) + "\n"
 
 
