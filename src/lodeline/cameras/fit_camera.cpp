@@ -27,18 +27,18 @@ struct Cost {
   Eigen::MatrixXd information;
   Eigen::VectorXd gradient;
 
-  Cost(const Camera& camera, const std::vector<Sighting>& sightings) {
+  Cost(const Camera& camera, const std::vector<RayObservation>& observations) {
     const auto size = 4 + static_cast<Eigen::Index>(camera.calibration().distortion.size());
     information.setZero(size, size);
     gradient.setZero(size);
     PixelByParameters by_parameters;
-    for (const Sighting& sighting : sightings) {
-      const auto pixel = camera.project(sighting.ray_C, nullptr, &by_parameters);
+    for (const RayObservation& observation : observations) {
+      const auto pixel = camera.project(observation.ray_C, nullptr, &by_parameters);
       if (!pixel) {
         squared_sum = std::numeric_limits<double>::infinity();
         return;
       }
-      const Vec2 error = sighting.pixel - *pixel;
+      const Vec2 error = observation.pixel - *pixel;
       squared_sum += error.squaredNorm();
       information += by_parameters.transpose() * by_parameters;
       gradient += by_parameters.transpose() * error;
@@ -57,25 +57,26 @@ std::shared_ptr<const Camera> cameraOrNull(const CameraCalibration& calibration)
 
 }  // namespace
 
-std::vector<Sighting> imageSightings(const Camera& camera) {
+std::vector<RayObservation> imageObservations(const Camera& camera) {
   constexpr int kGrid = 24;
   const CameraCalibration& c = camera.calibration();
-  std::vector<Sighting> sightings;
+  std::vector<RayObservation> observations;
   for (int row = 0; row <= kGrid; ++row) {
     for (int column = 0; column <= kGrid; ++column) {
       const Vec2 pixel(column * (c.width_px - 1.0) / kGrid, row * (c.height_px - 1.0) / kGrid);
-      if (const auto ray = camera.unproject(pixel)) sightings.push_back({*ray, pixel});
+      if (const auto ray = camera.unproject(pixel)) observations.push_back({*ray, pixel});
     }
   }
-  return sightings;
+  return observations;
 }
 
-CameraFit fitCamera(const CameraCalibration& start, std::vector<Sighting> sightings) {
+CameraFit fitCamera(const CameraCalibration& start, std::vector<RayObservation> observations) {
   constexpr int kSteps = 100;
   constexpr double kLeastDamping = 1e-12, kMostDamping = 1e8, kConverged = 1e-14;
   std::shared_ptr<const Camera> camera = makeCamera(start);
-  std::erase_if(sightings, [&](const Sighting& sighting) { return !camera->project(sighting.ray_C); });
-  Cost cost(*camera, sightings);
+  std::erase_if(observations,
+                [&](const RayObservation& observation) { return !camera->project(observation.ray_C); });
+  Cost cost(*camera, observations);
   double damping = 1e-6;
   for (int i = 0; i < kSteps && damping < kMostDamping; ++i) {
     Eigen::MatrixXd damped = cost.information;
@@ -84,7 +85,7 @@ CameraFit fitCamera(const CameraCalibration& start, std::vector<Sighting> sighti
     const Eigen::VectorXd step = damped.ldlt().solve(cost.gradient);
     const auto next = step.allFinite() ? cameraOrNull(moved(camera->calibration(), step)) : nullptr;
     if (next) {
-      Cost after(*next, sightings);
+      Cost after(*next, observations);
       if (after.squared_sum < cost.squared_sum) {
         const bool is_converged = cost.squared_sum - after.squared_sum < kConverged * cost.squared_sum;
         camera = next;
@@ -96,7 +97,7 @@ CameraFit fitCamera(const CameraCalibration& start, std::vector<Sighting> sighti
     }
     damping *= 10.0;
   }
-  const double count = static_cast<double>(std::max<size_t>(sightings.size(), 1));
+  const double count = static_cast<double>(std::max<size_t>(observations.size(), 1));
   return {camera->calibration(), std::sqrt(cost.squared_sum / count)};
 }
 
@@ -111,7 +112,7 @@ CameraFit convertedCamera(const CameraCalibration& calibration, const CameraMode
   const Vec2 scale = focal_lengths_px.cwiseQuotient(makeCamera(start)->focalLengthsOnAxis_px());
   start.fx_px *= scale.x();
   start.fy_px *= scale.y();
-  return fitCamera(start, imageSightings(*camera));
+  return fitCamera(start, imageObservations(*camera));
 }
 
 }  // namespace lodeline

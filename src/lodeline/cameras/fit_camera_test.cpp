@@ -17,7 +17,7 @@ TEST_P(FitOfACamera, FindsTheCameraAgain) {
   start.fx_px *= 1.02;
   start.cy_px -= 3.0;
   for (double& parameter : start.distortion) parameter *= 0.9;
-  const CameraFit fit = fitCamera(start, imageSightings(*truth));
+  const CameraFit fit = fitCamera(start, imageObservations(*truth));
   EXPECT_LT(fit.rms_px, 1e-3);
   const auto found = makeCamera(fit.calibration);
   for (const Vec2& pixel : {Vec2(20, 30), Vec2(370, 400), Vec2(700, 100)})

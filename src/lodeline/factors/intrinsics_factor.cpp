@@ -64,13 +64,13 @@ struct Place {
 CameraCalibration withDistortion(const CameraCalibration& lens, const Vec6& distortion) {
   const auto camera = makeCamera(lens);
   const Vec2 focal_lengths_px = camera->focalLengthsOnAxis_px();
-  std::vector<Sighting> sightings = imageSightings(*camera);
-  for (Sighting& sighting : sightings) {
+  std::vector<RayObservation> observations = imageObservations(*camera);
+  for (RayObservation& observation : observations) {
     Mat23 by_ray;
-    const Vec2 place = placeInPlane(camera->model().plane, sighting.ray_C, &by_ray);
-    sighting.pixel += focal_lengths_px.cwiseProduct(shapesAt(place) * distortion);
+    const Vec2 place = placeInPlane(camera->model().plane, observation.ray_C, &by_ray);
+    observation.pixel += focal_lengths_px.cwiseProduct(shapesAt(place) * distortion);
   }
-  return fitCamera(lens, std::move(sightings)).calibration;
+  return fitCamera(lens, std::move(observations)).calibration;
 }
 
 }  // namespace

@@ -124,13 +124,13 @@ Intrinsics blockFor(const CameraCalibration& file, const CameraCalibration& trut
   Eigen::Matrix<double, kIntrinsicsSize, kIntrinsicsSize> information;
   information.setZero();
   Intrinsics gradient = Intrinsics::Zero(kIntrinsicsSize);
-  for (const Sighting& sighting : imageSightings(*camera)) {
-    const auto measurement = DirectionMeasurement::fromBearing(*camera, sighting.ray_C, 1.0);
+  for (const RayObservation& observation : imageObservations(*camera)) {
+    const auto measurement = DirectionMeasurement::fromBearing(*camera, observation.ray_C, 1.0);
     const auto by_block =
         intrinsicsEffect(measurement, Vec2::Zero(), Intrinsics::Zero(kIntrinsicsSize).eval().data())
             .by_intrinsics;
     information += by_block.transpose() * by_block;
-    gradient += by_block.transpose() * (*true_camera->project(sighting.ray_C) - sighting.pixel);
+    gradient += by_block.transpose() * (*true_camera->project(observation.ray_C) - observation.pixel);
   }
   return information.ldlt().solve(gradient);
 }
@@ -147,10 +147,10 @@ TEST_P(IntrinsicsOfAModel, ServeTheFirstParametersOfTheModel) {
     const Intrinsics block = blockFor(file_, truth);
     const auto true_camera = makeCamera(truth);
     const auto corrected = makeCamera(correctedIntrinsics(file_, block.data()));
-    for (const Sighting& sighting : imageSightings(*camera)) {
-      const Vec2 pixel = *true_camera->project(sighting.ray_C);
-      EXPECT_LT((correctedPixel(file_, block, sighting.ray_C) - pixel).norm(), 0.15) << k;
-      EXPECT_LT((*corrected->project(sighting.ray_C) - pixel).norm(), 0.15) << k;
+    for (const RayObservation& observation : imageObservations(*camera)) {
+      const Vec2 pixel = *true_camera->project(observation.ray_C);
+      EXPECT_LT((correctedPixel(file_, block, observation.ray_C) - pixel).norm(), 0.15) << k;
+      EXPECT_LT((*corrected->project(observation.ray_C) - pixel).norm(), 0.15) << k;
     }
   }
 }

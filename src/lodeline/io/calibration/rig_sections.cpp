@@ -135,7 +135,7 @@ class SectionCollector {
                      [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
       const size_t cam = hint.find("cam");
       if (cam != std::string::npos && cam + 3 < hint.size() && std::isdigit(hint[cam + 3]) != 0) {
-        return hint.substr(cam, 4);
+        return hint.substr(cam, hint.find_first_not_of("0123456789", cam + 3) - cam);
       }
     }
     std::string name = fmt::format("cam{}", place);
