@@ -9,7 +9,7 @@
 namespace lodeline {
 
 /// A calibration as YAML, with a comment on every key. The numbers keep all their bits when read back.
-/// docs/how-to/calibrate-magnetometer.md lists the keys.
+/// docs/reference/file-formats.md lists the keys.
 std::string calibrationYaml(const MagnetometerFit& fit);
 
 /// Writes calibrationYaml() to a file. Throws InputError on failure.

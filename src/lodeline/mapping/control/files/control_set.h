@@ -59,7 +59,7 @@ struct ControlReadOptions {
 constexpr double kFarthestControl_m = 50e3;
 
 /// Reads control points: a table (CSV), a Survex file (`.3d` version 8) or Survex' stations (`.pos`). The
-/// page docs/how-to/control-points.md describes the columns. Throws InputError naming file and line where a
+/// page docs/reference/file-formats.md describes the columns. Throws InputError naming file and line where a
 /// row cannot be used, and UsageError where an option is missing.
 ControlSet readControl(const std::filesystem::path& file, const ControlReadOptions& options,
                        Diagnostics* diagnostics);

@@ -7,7 +7,7 @@ namespace lodeline {
 
 /// Least uncertainty of odometry between two keyframes: a random walk over the path. Stereo odometry with a
 /// calibrated rig and sharp images is not better than this. After 226 m it amounts to 3 cm and 0.3 degrees;
-/// such dives end 0.2 to 1 m and 0.3 to 1 degrees off (docs/theory/pose-graph.md).
+/// such dives end 0.2 to 1 m and 0.3 to 1 degrees off.
 struct OdometryFloor {
   double position_m_per_sqrt_m = 2e-3;
   double rotation_rad_per_sqrt_m = 3.5e-4;
