@@ -19,7 +19,7 @@ constexpr size_t kMostPoints = 60;
 constexpr int kLeastPoints = 20;
 
 /// Time span of a comparison, and interval between comparisons.
-constexpr double kWindow_s = 4.6;
+constexpr double kComparedWindow_s = 4.6;
 constexpr double kBetweenComparisons_s = 1.5;
 /// Margin of readings around the rotations, for offsets of both signs.
 constexpr double kMargin_s = 1.0;
@@ -51,7 +51,7 @@ std::optional<double> ClockMonitor::add(const FrameTracks& tracks, std::span<con
   for (const FeatureObservation& observation : tracks.observations) {
     if (observation.camera == 0) rays_[observation.track] = observation.bearing_C;
   }
-  if (!next_comparison_) next_comparison_ = tracks.time + Duration::fromSeconds(kWindow_s);
+  if (!next_comparison_) next_comparison_ = tracks.time + Duration::fromSeconds(kComparedWindow_s);
   if (tracks.time < *next_comparison_) return std::nullopt;
   next_comparison_ = tracks.time + Duration::fromSeconds(kBetweenComparisons_s);
   return compare(tracks.time, diagnostics);
@@ -88,7 +88,7 @@ void ClockMonitor::addTurn(const FrameTracks& tracks) {
 }
 
 void ClockMonitor::forget(Time now) {
-  const Time oldest_turn = now - Duration::fromSeconds(kWindow_s);
+  const Time oldest_turn = now - Duration::fromSeconds(kComparedWindow_s);
   const Time oldest_reading = oldest_turn - Duration::fromSeconds(kMargin_s);
   while (!turns_.empty() && turns_.front().begin < oldest_turn) turns_.pop_front();
   while (!imu_.empty() && imu_.front().time < oldest_reading) imu_.pop_front();
@@ -151,7 +151,7 @@ void ClockMonitor::report(Time now, double offset_s, double sigma_s, Diagnostics
   const std::string where = fmt::format(
       "in the {:g} s before {} ns the stamps of the images of {} {} the gyroscope by {:.0f} ms "
       "(+-{:.1f})",
-      kWindow_s + kBetweenComparisons_s, now.nanoseconds(), camera_,
+      kComparedWindow_s + kBetweenComparisons_s, now.nanoseconds(), camera_,
       offset_s < 0.0 ? "lag behind" : "run ahead of", 1e3 * std::abs(offset_s), 1e3 * sigma_s);
   if (!offset_s_) {
     diagnostics->report(

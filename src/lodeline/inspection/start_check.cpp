@@ -19,7 +19,7 @@ constexpr int kImagesOfPairs = 88;
 constexpr int kMostSamples = 6;
 constexpr double kPairInterval_s = 0.15;
 /// Smallest offset of images to the gyroscope, or between cameras, that the run corrects.
-constexpr double kLeastOffset_s = 0.015;
+constexpr double kLeastStartOffset_s = 0.015;
 
 using Kinds = std::array<std::string_view, 3>;
 constexpr Kinds kOfImagesAndGyroscope = {"axes_mirrored", "images_upside_down", "extrinsics_rotation"};
@@ -107,7 +107,7 @@ double shownOffset_s(const CameraInspection& camera, const Inspection& inspectio
       inspection.findings.begin(), inspection.findings.end(), [&](const InspectionFinding& finding) {
         return finding.kind == kCameraTimeOffset && finding.sensor == camera.survey.name;
       });
-  const bool is_large = is_found && std::abs(camera.turning->time_offset_s) > kLeastOffset_s;
+  const bool is_large = is_found && std::abs(camera.turning->time_offset_s) > kLeastStartOffset_s;
   return is_large && isSteady(camera) ? camera.turning->time_offset_s : 0.0;
 }
 
@@ -119,7 +119,7 @@ std::vector<double> imageOffsets_s(const Inspection& inspection) {
     const CameraInspection& first = inspection.cameras.front();
     const bool is_apart =
         camera.turning && first.turning && isSteady(camera) &&
-        std::abs(camera.turning->time_offset_s - first.turning->time_offset_s) > kLeastOffset_s;
+        std::abs(camera.turning->time_offset_s - first.turning->time_offset_s) > kLeastStartOffset_s;
     const bool has_own = offsets_s.empty() || is_apart;
     offsets_s.push_back(has_own ? shownOffset_s(camera, inspection) : offsets_s.front());
   }

@@ -8,14 +8,14 @@
 namespace lodeline {
 namespace {
 
-constexpr double kWindow_s = 10.0;
+constexpr double kStretch_s = 10.0;
 constexpr double kUnusualScatter = 3.0;  ///< multiple of the median window's
 constexpr int kFewestInAMean = 4;
 
 }  // namespace
 
 void StillnessMonitor::add(Time time, const Vec3& reading) {
-  if (begin_ && (time - *begin_).seconds() >= kWindow_s) close();
+  if (begin_ && (time - *begin_).seconds() >= kStretch_s) close();
   if (!begin_) {
     begin_ = time;
     origin_ = reading;
