@@ -4,6 +4,7 @@
   - A folder has at most 30 files, a source file at most 400 lines.
   - Includes go downwards only. Layers are ordered by src/CMakeLists.txt, then apps, studies, ros and python; the folders inside
     a layer by the FOLDERS of its CMakeLists.txt ("." for the layer's own folder, otherwise that comes last).
+  - No two headers define a class of one name in one namespace: the linker would join functions of different classes.
   - A public header (include/lodeline) counts as part of the lowest folder that uses it. It includes only public headers,
     the standard library, Eigen and OpenCV's core; so do the examples.
 
@@ -121,7 +122,32 @@ def breaches_of(file, rank):
             yield f"{name}: includes {include}, which is above it"
 
 
+def classes_of(text):
+    """Names of the classes that a header defines in its namespaces, with these."""
+    text = re.sub(r"//.*", "", text)
+    spaces = []
+    for space, name, end in re.findall(r"^(?:namespace ([\w:]*) *\{|(?:template <.*>\n)?(?:struct|class|enum class) (\w+)"
+                                       r"(?: final)?(?: *:(?!:)[^;{]*)? *\{|(\}) *\n*(?=\Z|^namespace|\}))", text, re.M):
+        if name:
+            yield "::".join([*spaces, name])
+        elif end:
+            del spaces[-1:]
+        else:
+            spaces.append(space)
+
+
+def defined_twice():
+    headers = {}
+    for top in TOPS:
+        for file in sorted((ROOT / top).rglob("*.h")):
+            for name in classes_of(file.read_text()):
+                headers.setdefault(name, []).append(str(file.relative_to(ROOT)))
+    for name, files in headers.items():
+        if len(files) > 1:
+            yield f"{name}: a class of this name is in {' and '.join(files)}"
+
+
 if __name__ == "__main__":
-    found = sorted(breaches())
+    found = sorted([*breaches(), *defined_twice()])
     print("\n".join(found))
     sys.exit(1 if found else 0)

@@ -78,7 +78,7 @@ std::optional<SimulatedFrame> PointSimulation::next() {
   takeVehicle(frame);
 
   const bool dark = std::any_of(options_.blackouts.begin(), options_.blackouts.end(),
-                                [&](const TimeSpan& span) { return span.contains(time_s); });
+                                [&](const MotionInterval& span) { return span.contains(time_s); });
   if (dark) {
     tracks_.clear();
   } else {

@@ -18,7 +18,7 @@
 namespace lodeline {
 
 /// A time interval, s from the start of the motion.
-struct TimeSpan {
+struct MotionInterval {
   double begin_s = 0.0;
   double duration_s = 0.0;
   bool contains(double t) const { return t >= begin_s && t < begin_s + duration_s; }
@@ -61,7 +61,7 @@ struct PointSimulationOptions {
   double farthest_m = 8.0;
   double stereo_share = 1.0;  ///< fraction of observations that are also visible in the second camera
   double dropped_frame_share = 0.0;
-  std::vector<TimeSpan> blackouts;  ///< intervals with frames but without features
+  std::vector<MotionInterval> blackouts;  ///< intervals with frames but without features
 
   ImuErrors imu;
   std::optional<PointMagnetometer> magnetometer;  ///< requires a rig with a magnetometer

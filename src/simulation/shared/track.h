@@ -10,7 +10,7 @@ namespace lodeline {
 /// Values at even steps from second 0, with linear interpolation (rotations: spherical) between them; beyond
 /// the ends, those of the ends.
 template <class Value>
-struct Track {
+struct SampledTrack {
   double step_s = 0.1;
   std::vector<Value> values;
 
@@ -29,7 +29,7 @@ struct Track {
 };
 
 /// How far the water has been carried since second 0, m.
-using DriftTrack = Track<Vec3>;
-using PoseTrack = Track<Rigid3>;
+using DriftTrack = SampledTrack<Vec3>;
+using PoseTrack = SampledTrack<Rigid3>;
 
 }  // namespace lodeline

@@ -8,8 +8,8 @@
 namespace lodeline {
 namespace {
 
-CircuitOptions circuitOf(double radius_m) {
-  CircuitOptions options;
+BatchCircuitOptions circuitOf(double radius_m) {
+  BatchCircuitOptions options;
   options.radius_m = radius_m;
   return options;
 }

@@ -23,7 +23,7 @@ double wayAt(double t, double speed_m_per_s) {
   return speed_m_per_s * (while_waking + std::max(0.0, t - kRest_s - kPickUp_s));
 }
 
-Motion circling(const CircuitOptions& options, double duration_s, const Rigid3& diver_from_body) {
+Motion circling(const BatchCircuitOptions& options, double duration_s, const Rigid3& diver_from_body) {
   const auto angle = [&](double t) { return wayAt(t, options.speed_m_per_s) / options.radius_m; };
   const auto spline = [&](const auto& of) {
     MotionChannel channel;
@@ -47,7 +47,7 @@ Motion circling(const CircuitOptions& options, double duration_s, const Rigid3& 
 }
 
 /// Points on the walls of an elliptic passage around the circle.
-LandmarkField ringLandmarks(const CircuitOptions& options, const Vec3& shift_W) {
+LandmarkField ringLandmarks(const BatchCircuitOptions& options, const Vec3& shift_W) {
   Random random(options.seed, "circuit/points");
   std::vector<LandmarkPoint> points;
   const int count = static_cast<int>(kTurn * options.radius_m * options.points_per_metre);
@@ -63,7 +63,7 @@ LandmarkField ringLandmarks(const CircuitOptions& options, const Vec3& shift_W) 
   return LandmarkField(std::move(points));
 }
 
-Rig givenRig(Rig rig, const CircuitOptions& options) {
+Rig givenRig(Rig rig, const BatchCircuitOptions& options) {
   for (CameraCalibration& camera : rig.cameras) {
     camera.fx_px *= 1.0 + options.focal_length_error;
     camera.fy_px *= 1.0 + options.focal_length_error;
@@ -78,7 +78,7 @@ Rig givenRig(Rig rig, const CircuitOptions& options) {
 
 }  // namespace
 
-CircuitRun::CircuitRun(const CircuitOptions& wanted) {
+CircuitRun::CircuitRun(const BatchCircuitOptions& wanted) {
   MountedRig mounted = standardRig({});
   const ImuErrors imu = drawImuErrors(imuGrade("gx5-25"), {}, wanted.seed);
   mounted.rig.imu.noise = statedNoise(imu);

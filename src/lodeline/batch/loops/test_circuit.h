@@ -10,7 +10,7 @@
 namespace lodeline {
 
 /// Test support: a passage that closes to a circle, swum several times.
-struct CircuitOptions {
+struct BatchCircuitOptions {
   uint64_t seed = 1;
   double radius_m = 25.0;
   double laps = 2.0;
@@ -36,7 +36,7 @@ struct CircuitRun {
   };
   std::vector<std::vector<Seen>> seen;
 
-  explicit CircuitRun(const CircuitOptions& options);
+  explicit CircuitRun(const BatchCircuitOptions& options);
 
   double rootMeanSquare(const std::vector<FrameEstimate>& frames) const;
 };

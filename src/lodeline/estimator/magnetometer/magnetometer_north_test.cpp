@@ -63,7 +63,7 @@ TEST(MagnetometerNorth, KeepsNorthOverAPause) {
   HeadingTrialOptions options = trialOptions(140.0);
   const HeadingTrial in_time = runHeadingTrial(options);
   options.magnetometer_from_s = 5.0;
-  options.magnetometer_pause = TimeSpan{20.0, 80.0};
+  options.magnetometer_pause = MotionInterval{20.0, 80.0};
   const HeadingTrial paused = runHeadingTrial(options);
   EXPECT_LT(std::abs(lastHalf_deg(paused, options) - lastHalf_deg(in_time, options)), 0.3);
   EXPECT_LT(paused.largest(10.0), 1.0 * kDegree);

@@ -51,7 +51,7 @@ TestSceneOptions sceneOptions(double duration_s) {
 
 /// `no_images`: time span without frames, in which inertial readings and those of the gauge continue.
 Dive dive(const TestSceneOptions& options, const std::optional<Gauge>& gauge, EstimatorOptions estimator,
-          const TimeSpan& no_images = {}) {
+          const MotionInterval& no_images = {}) {
   constexpr double kEarly_s = 0.03;
   const double period_s = 1.0 / options.points.frame_rate_hz;
   const int readings_apart = static_cast<int>(std::lround(0.5 / period_s));

@@ -46,8 +46,8 @@ struct HeadingTrialOptions {
   int cameras = 2;
   std::string imu_grade = "gx5-25";  ///< of simulation/sensors/imu_model.h, with its magnetometer
   FieldTrouble trouble = FieldTrouble::None;
-  double magnetometer_from_s = 0.0;            ///< no reading before, since the first frame
-  std::optional<TimeSpan> magnetometer_pause;  ///< nor within
+  double magnetometer_from_s = 0.0;                  ///< no reading before, since the first frame
+  std::optional<MotionInterval> magnetometer_pause;  ///< nor within
   /// Number of times that one lamp with one field is switched on and off at even intervals; 0: times and
   /// sizes are drawn.
   int lamp_switchings = 0;

@@ -15,8 +15,9 @@ constexpr double kRoomHalfHeight_m = 2.5;
 
 Motion swaying(const TestSceneOptions& options) {
   Random random(options.seed, "scene/phases");
-  const auto covered = [](const std::vector<TimeSpan>& spans, double t) {
-    return std::any_of(spans.begin(), spans.end(), [t](const TimeSpan& span) { return span.contains(t); });
+  const auto covered = [](const std::vector<MotionInterval>& spans, double t) {
+    return std::any_of(spans.begin(), spans.end(),
+                       [t](const MotionInterval& span) { return span.contains(t); });
   };
   const auto addSway = [&](MotionChannel& channel, double amplitude, double rate_rad_per_s, bool is_turn,
                            double from_s = -1e9) {

@@ -18,11 +18,11 @@ struct TestSceneOptions {
   double translation = 1.0;  ///< scales the sway of the position once more; 0 turns on the spot
   /// Additional yaw rate from 5 s on, at most this much.
   double hurry_rad_per_s = 0.0;
-  Vec3 drift_m_per_s = Vec3::Zero();  ///< constant velocity on top
-  std::vector<TimeSpan> still;        ///< the sway fades within 3 s of their borders
-  double wall_roughness_m = 1.0;      ///< greatest distance of the points from the wall of the room
-  std::vector<TimeSpan> on_the_spot;  ///< only the sway of the position fades
-  PointSimulationOptions points;      ///< seed, end and IMU errors are filled in by the scene
+  Vec3 drift_m_per_s = Vec3::Zero();        ///< constant velocity on top
+  std::vector<MotionInterval> still;        ///< the sway fades within 3 s of their borders
+  double wall_roughness_m = 1.0;            ///< greatest distance of the points from the wall of the room
+  std::vector<MotionInterval> on_the_spot;  ///< only the sway of the position fades
+  PointSimulationOptions points;            ///< seed, end and IMU errors are filled in by the scene
   /// Sigmas, per axis, of the distribution of the initial biases.
   double gyroscope_bias_sigma_rad_per_s = 0.02;
   double accelerometer_bias_sigma_m_per_s2 = 0.05;

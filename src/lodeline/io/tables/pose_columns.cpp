@@ -109,7 +109,7 @@ std::optional<PoseColumns> findPoseColumns(const std::vector<ColumnName>& column
   const StatedUnit unit = statedUnit(columns[result.position[0]], Quantity::Length);
   result.position_to_m = unit.factor.value_or(1.0);
   // "[-]" states none.
-  if (unit.text.find_first_not_of("-") != std::string::npos && !unit.factor) result.unknown_unit = unit.text;
+  if (unit.text.find_first_not_of('-') != std::string::npos && !unit.factor) result.unknown_unit = unit.text;
   return result;
 }
 

@@ -294,9 +294,8 @@ bool TableReader::next() {
 }
 
 void TableReader::refuseOtherHeader() {
-  std::vector<ColumnName> names;
   const std::vector<std::string_view> cells = cells_;
-  for (const std::string_view cell : cells) names.emplace_back(cell);
+  const std::vector<ColumnName> names(cells.begin(), cells.end());
   if (!areNames(cells) || !options_.is_header(names)) return;
   throw InputError(fmt::format("{}: a second header, '{}', after that in line {}; split the file there",
                                where(), excerpt(line_.text), header_line_));

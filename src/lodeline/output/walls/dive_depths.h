@@ -16,7 +16,7 @@ using WallProgress = std::function<bool(const char* stage, double share)>;
 struct DiveDepthOptions {
   KeyframeSteps steps;
   RectificationOptions rectification;
-  DepthOptions depth;
+  DepthImageOptions depth;
 };
 
 /// Depths of a dive.

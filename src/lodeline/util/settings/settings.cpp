@@ -120,14 +120,14 @@ void Settings::addChoice(const std::string& key, const std::string& documentatio
                          std::function<size_t()> current) {
   const std::string choices = fmt::format("one of {}", fmt::join(names, ", "));
   add({key, documentation + " O" + choices.substr(1) + ".", choices,
-       [names, store](const Text& text) {
+       [names, store = std::move(store)](const Text& text) {
          const auto found = std::find_if(names.begin(), names.end(), [&text](const std::string& name) {
            return !text.is_list && equalIgnoringCase(name, text.scalars[0]);
          });
          if (found != names.end()) store(static_cast<size_t>(found - names.begin()));
          return found != names.end();
        },
-       [names, current] { return names.at(current()); }});
+       [names, current = std::move(current)] { return names.at(current()); }});
 }
 
 void Settings::add(Entry entry) {

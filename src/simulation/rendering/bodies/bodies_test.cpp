@@ -9,8 +9,8 @@
 namespace lodeline {
 namespace {
 
-Ellipsoid someEllipsoid() {
-  Ellipsoid part;
+BodyPart someEllipsoid() {
+  BodyPart part;
   part.world_from_part =
       Rigid3(Quat(Eigen::AngleAxisd(0.7, Vec3(1.0, 2.0, -1.0).normalized())), Vec3(2.0, 0.3, -0.2));
   part.half_axes_m = Vec3(0.5, 0.1, 0.2);
@@ -23,8 +23,8 @@ Vec3 centreOf(const std::vector<PlacedEllipsoid>& bodies) {
   return sum.cast<double>();
 }
 
-TEST(Ellipsoid, RaysEndOnItsSurface) {
-  const Ellipsoid part = someEllipsoid();
+TEST(BodyPart, RaysEndOnItsSurface) {
+  const BodyPart part = someEllipsoid();
   const PlacedEllipsoid placed(part);
   int hits = 0;
   for (int i = 0; i < 400; ++i) {
@@ -42,7 +42,7 @@ TEST(Ellipsoid, RaysEndOnItsSurface) {
   EXPECT_GT(hits, 20);
 }
 
-TEST(Ellipsoid, HidesAndShadesWhatIsBehind) {
+TEST(BodyPart, HidesAndShadesWhatIsBehind) {
   const std::vector<PlacedEllipsoid> bodies = {PlacedEllipsoid(someEllipsoid())};
   RayPacket rays;
   HitPacket hits;

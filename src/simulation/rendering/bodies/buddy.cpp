@@ -22,7 +22,7 @@ class BodyBuilder {
 
   void add(const Rigid3& buddy_from_part, const Vec3& half_axes_m, float reflectance, float contrast,
            float gloss = 0.01f) {
-    Ellipsoid part;
+    BodyPart part;
     part.world_from_part = world_from_buddy_ * buddy_from_part;
     part.half_axes_m = half_axes_m;
     part.back_reflectance = part.belly_reflectance = reflectance;

@@ -14,7 +14,7 @@ constexpr float kNone = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
-PlacedEllipsoid::PlacedEllipsoid(const Ellipsoid& part)
+PlacedEllipsoid::PlacedEllipsoid(const BodyPart& part)
     : part_from_world_(part.world_from_part.rotation.conjugate().toRotationMatrix().cast<float>()),
       centre_W_(part.world_from_part.translation.cast<float>()),
       half_axes_m_(part.half_axes_m.cast<float>()),

@@ -7,8 +7,9 @@
 
 namespace lodeline {
 
-/// A moving part of a fish or of a diver. Its skin has a pattern in its own axes: x forward, y left, z up.
-struct Ellipsoid {
+/// An ellipsoid that is a moving part of a fish or of a diver. Its skin has a pattern in its axes: x forward,
+/// y left, z up.
+struct BodyPart {
   Rigid3 world_from_part;
   Vec3 half_axes_m = Vec3::Ones();
   float back_reflectance = 0.2f;    ///< albedo above
@@ -22,7 +23,7 @@ struct Ellipsoid {
 /// An ellipsoid at one moment, single precision.
 class PlacedEllipsoid {
  public:
-  explicit PlacedEllipsoid(const Ellipsoid& part);
+  explicit PlacedEllipsoid(const BodyPart& part);
 
   const Vec3f& centre() const { return centre_W_; }
   float boundingRadius() const { return bounding_radius_m_; }

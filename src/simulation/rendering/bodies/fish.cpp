@@ -45,7 +45,7 @@ void addFish(const FishSchool& school, int fish, const Rigid3& world_from_fish, 
   const double length_m = school.length_m * (1.0 + 0.15 * drawn(school, fish, 4));
   const double beat =
       std::sin(2.0 * std::numbers::pi * (2.2 + 0.5 * drawn(school, fish, 5)) * time_s + 3.0 * fish);
-  Ellipsoid skin;
+  BodyPart skin;
   skin.back_reflectance = 0.03f;
   skin.belly_reflectance = 0.07f;
   skin.contrast = 0.55f;

@@ -32,7 +32,7 @@ struct DepthImage {
 };
 
 /// Which depths are kept.
-struct DepthOptions {
+struct DepthImageOptions {
   double nearest_m = 0.5;           ///< nearer surfaces give no depth
   double max_sigma_m = 0.08;        ///< expected error of a depth by baseline and disparity
   double disparity_sigma_px = 0.3;  ///< one sigma of a match of the plane sweep

@@ -26,7 +26,7 @@ cv::Mat colourOf(const PendingImage& image, const cv::Mat& grey) {
 }  // namespace
 
 DepthJobs::DepthJobs(KeyframeViews& views, const RectifiedView& view, bool is_pair,
-                     const DepthOptions& options)
+                     const DepthImageOptions& options)
     : views_(views), view_(view), is_pair_(is_pair), stereo_(view, options), sweep_(view, options) {}
 
 std::optional<DepthJob> DepthJobs::next() { return is_pair_ ? nextPair() : nextSweep(); }

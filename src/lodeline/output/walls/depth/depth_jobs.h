@@ -23,7 +23,7 @@ struct DepthJob {
 class DepthJobs {
  public:
   /// Keeps references to `views` and `view`. `is_pair`: whether there are two cameras.
-  DepthJobs(KeyframeViews& views, const RectifiedView& view, bool is_pair, const DepthOptions& options);
+  DepthJobs(KeyframeViews& views, const RectifiedView& view, bool is_pair, const DepthImageOptions& options);
 
   std::optional<DepthJob> next();
 

@@ -33,7 +33,7 @@ class StereoDepthTest : public testing::Test {
     return StereoDepth(view_, options_).compute(view_.rectify(0, first), view_.rectify(1, second));
   }
   RectifiedView view_{test::wallCameras(2), {}};
-  DepthOptions options_;
+  DepthImageOptions options_;
 };
 
 TEST_F(StereoDepthTest, MeasuresAPlane) {
@@ -150,7 +150,7 @@ class SweepDepthTest : public testing::Test {
   }
   cv::Mat texture_ = test::wallTexture();
   RectifiedView view_{test::wallCameras(1), {}};
-  DepthOptions options_;
+  DepthImageOptions options_;
 };
 
 TEST_F(SweepDepthTest, MeasuresAPlane) {

@@ -22,7 +22,7 @@ cv::Mat textureOf(const cv::Mat& grey) {
 namespace {
 
 /// A matcher keeps buffers, so each thread needs one.
-cv::Ptr<cv::StereoSGBM> makeMatcher(const RectifiedView& view, const DepthOptions& options) {
+cv::Ptr<cv::StereoSGBM> makeMatcher(const RectifiedView& view, const DepthImageOptions& options) {
   constexpr int kBlock_px = 5, kSmall = 8 * kBlock_px * kBlock_px, kLarge = 4 * kSmall;
   constexpr int kSpeck_px = 150, kStep = 2, kUnique_percent = 8, kBack_px = 1, kContrast = 31;
   const PinholeView& pinhole = view.pinhole();
@@ -35,7 +35,7 @@ cv::Ptr<cv::StereoSGBM> makeMatcher(const RectifiedView& view, const DepthOption
 
 }  // namespace
 
-StereoDepth::StereoDepth(const RectifiedView& view, const DepthOptions& options)
+StereoDepth::StereoDepth(const RectifiedView& view, const DepthImageOptions& options)
     : view_(view), options_(options) {}
 
 DepthImage StereoDepth::compute(const cv::Mat& first, const cv::Mat& second) const {

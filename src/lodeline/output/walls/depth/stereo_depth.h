@@ -13,14 +13,14 @@ namespace lodeline {
 class StereoDepth {
  public:
   /// Keeps a reference to `view`, which has two cameras.
-  StereoDepth(const RectifiedView& view, const DepthOptions& options);
+  StereoDepth(const RectifiedView& view, const DepthImageOptions& options);
 
   /// `first`, `second`: rectified 8-bit grey images. The result has no colour.
   DepthImage compute(const cv::Mat& first, const cv::Mat& second) const;
 
  private:
   const RectifiedView& view_;
-  DepthOptions options_;
+  DepthImageOptions options_;
 };
 
 }  // namespace lodeline

@@ -53,7 +53,7 @@ std::optional<double> bestPlane(const std::vector<cv::Mat>& costs, int u, int v)
 
 }  // namespace
 
-SweepDepth::SweepDepth(const RectifiedView& view, const DepthOptions& options)
+SweepDepth::SweepDepth(const RectifiedView& view, const DepthImageOptions& options)
     : view_(view),
       options_(options),
       far_(1.0 / DepthImage::kMaxDepth_m),

@@ -23,7 +23,7 @@ struct SweepFrame {
 class SweepDepth {
  public:
   /// Keeps a reference to `view`.
-  SweepDepth(const RectifiedView& view, const DepthOptions& options);
+  SweepDepth(const RectifiedView& view, const DepthImageOptions& options);
 
   /// The result has no colour; it is empty of depths without neighbours.
   DepthImage compute(const SweepFrame& keyframe, const std::vector<SweepFrame>& before,
@@ -44,7 +44,7 @@ class SweepDepth {
   double parallax(const std::vector<Neighbour>& neighbours, int u, int v, double inverse_depth) const;
 
   const RectifiedView& view_;
-  DepthOptions options_;
+  DepthImageOptions options_;
   double far_, step_;  ///< 1/m
 };
 
