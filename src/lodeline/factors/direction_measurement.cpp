@@ -17,7 +17,7 @@ constexpr double kOutlierResidual = 1e4;
 /// direction.
 std::optional<Vec2> projectAlong(const Camera& camera, const ViewRay& ray, const Vec3& offset,
                                  Mat23* by_direction) {
-  auto pixel =
+  const auto pixel =
       camera.project(ray.origin_C + Camera::kNominalDistance_m * (ray.direction_C + offset), by_direction);
   *by_direction *= Camera::kNominalDistance_m;
   return pixel;
@@ -65,7 +65,7 @@ Vec2 placeInPlane(RadialPlane plane, const Vec3& ray, Mat23* by_ray) {
   constexpr double kOnAxis = 1e-6;
   const double sine = ray.head<2>().norm();
   if (plane == RadialPlane::Tangent || sine < kOnAxis) {
-    Vec2 place = ray.head<2>() / ray.z();
+    const Vec2 place = ray.head<2>() / ray.z();
     *by_ray << Mat2::Identity() / ray.z(), -place / ray.z();
     return place;
   }

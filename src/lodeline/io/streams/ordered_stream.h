@@ -234,11 +234,10 @@ class OrderedStream {
     std::optional<Reading> reading = pull();
     if (!reading) return false;
     const std::optional<Time> newest = ahead_.empty() ? monitor_.last() : std::optional(ahead_.back().time);
-    if (!newest || reading->time > *newest) {
-      ahead_.push_back(std::move(*reading));
-    } else if (reading->time == *newest) {
+    const bool is_newest = !newest || reading->time > *newest;
+    if (!is_newest && reading->time == *newest) {
       monitor_.reportDuplicate(reading->time);
-    } else if (!dropWildStamps(reading->time)) {
+    } else if (!is_newest && !dropWildStamps(reading->time)) {
       sortOut(std::move(*reading), *newest);
     } else {
       ahead_.push_back(std::move(*reading));
