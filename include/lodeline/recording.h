@@ -97,7 +97,7 @@ class RecordedSource : public MeasurementSource {
 
  protected:
   explicit RecordedSource(Rig rig, std::optional<ImuCorrection> imu_correction = std::nullopt)
-      : rig_(std::move(rig)), imu_correction_(imu_correction) {}
+      : rig_(std::move(rig)), imu_correction_(std::move(imu_correction)) {}
 
   Rig rig_;
   /// Correction of the IMU's axes; nothing where no calibration states it.

@@ -43,7 +43,6 @@ std::string cameraFileModels() {
   for (const CameraModel& model : cameraModels())
     distortions[model.projections.front()].push_back(model.distortions.front());
   std::vector<std::string> words;
-  words.reserve(distortions.size());
   for (const auto& [projection, names] : distortions)
     words.push_back(fmt::format("{} ({})", projection, fmt::join(names, ", ")));
   return fmt::format("{}", fmt::join(words, ", "));

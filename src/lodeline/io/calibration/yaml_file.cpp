@@ -68,8 +68,8 @@ bool hasAnyKey(const YAML::Node& node, std::initializer_list<const char*> keys) 
          std::any_of(keys.begin(), keys.end(), [&](const char* key) { return node[key].IsDefined(); });
 }
 
-CalibrationMap::CalibrationMap(YAML::Node node, std::filesystem::path file, std::string section)
-    : node_(std::move(node)), file_(std::move(file)), section_(std::move(section)) {
+CalibrationMap::CalibrationMap(const YAML::Node& node, std::filesystem::path file, std::string section)
+    : node_(node), file_(std::move(file)), section_(std::move(section)) {
   if (!node_.IsMap()) {
     throw InputError(fmt::format("{}: {} holds no keys; write the sensor's calibration there", file_.string(),
                                  section_.empty() ? "the file" : "'" + section_ + "'"));

@@ -27,7 +27,7 @@ class CalibrationMap {
  public:
   /// `section`: key of the map in the file, for messages; empty for the whole file. Throws InputError where
   /// `node` is not a map.
-  CalibrationMap(YAML::Node node, std::filesystem::path file, std::string section);
+  CalibrationMap(const YAML::Node& node, std::filesystem::path file, std::string section);
 
   bool has(const std::string& key);
   /// Each function throws InputError where the key is missing or has another type.

@@ -28,7 +28,8 @@ std::optional<double> parseProfileTime(std::string_view text) {
   if (!ns) ns = parseCalendarTime_ns(withoutZoneName(text));
   if (!ns) return std::nullopt;
   // In two parts, so that whole seconds stay exact.
-  return static_cast<double>(*ns / 1'000'000'000) + 1e-9 * static_cast<double>(*ns % 1'000'000'000);
+  const int64_t whole_s = *ns / 1'000'000'000;
+  return static_cast<double>(whole_s) + 1e-9 * static_cast<double>(*ns % 1'000'000'000);
 }
 
 std::string profileStart(std::string_view date) {

@@ -34,7 +34,7 @@ std::string whyNoImages(const std::filesystem::path& camera) {
   try {
     Diagnostics reported_when_read_in_earnest;
     if (ImageList::hasImages(camera)) {
-      ImageList(camera, &reported_when_read_in_earnest);
+      const ImageList readable(camera, &reported_when_read_in_earnest);
       return {};
     }
   } catch (const InputError& error) {

@@ -22,7 +22,7 @@ EurocSource::EurocSource(const std::filesystem::path& data, const EurocOptions& 
                          Diagnostics* diagnostics)
     : EurocSource(findEurocLayout(data, options), diagnostics) {}
 
-EurocSource::EurocSource(EurocLayout layout, Diagnostics* diagnostics)
+EurocSource::EurocSource(const EurocLayout& layout, Diagnostics* diagnostics)
     : EurocSource(layout, readFolderCalibration(layout, diagnostics), diagnostics) {}
 
 EurocSource::EurocSource(EurocLayout layout, const RigFile& described, Diagnostics* diagnostics)

@@ -44,7 +44,7 @@ class EurocSource : public RecordedSource {
   std::optional<CurrentSample> nextCurrents() override;
 
  private:
-  EurocSource(EurocLayout layout, Diagnostics* diagnostics);
+  EurocSource(const EurocLayout& layout, Diagnostics* diagnostics);
   GreyRange measureGreyRange(size_t camera);
   EurocSource(EurocLayout layout, const RigFile& described, Diagnostics* diagnostics);
   void checkMagneticUnit(const MagnetometerSample& sample);

@@ -16,7 +16,6 @@ constexpr int kFewestBursts = 3;
 
 std::optional<Duration> burstPeriod(const std::vector<Time>& stamps) {
   std::vector<double> since_first_ns;
-  since_first_ns.reserve(stamps.size());
   for (const Time stamp : stamps)
     since_first_ns.push_back(static_cast<double>(span(stamp, stamps.front()).nanoseconds()));
   const double rate_per_ns = stampsPerUnit(since_first_ns);

@@ -81,7 +81,6 @@ std::vector<TimeColumn> findTimeColumns(const std::vector<ColumnName>& columns) 
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return ranks[a] < ranks[b]; });
   std::vector<TimeColumn> sorted;
-  sorted.reserve(order.size());
   for (const std::size_t i : order) sorted.push_back(times[i]);
   return sorted;
 }

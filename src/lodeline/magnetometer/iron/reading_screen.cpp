@@ -81,14 +81,12 @@ ReadingScreen screenReadings(std::span<const MagnetometerSample> samples, Diagno
   ReadingScreen screen;
   Time frozen_since;
   for (const MagnetometerSample& sample : samples) {
+    const MagnetometerSample* before = screen.usable.empty() ? nullptr : &screen.usable.back();
     if (!sample.field_M.allFinite()) {
       ++screen.not_finite;
-    } else if (screen.usable.empty()) {
-      frozen_since = sample.time;
-      screen.usable.push_back(sample);
-    } else if (sample.time <= screen.usable.back().time) {
+    } else if (before != nullptr && sample.time <= before->time) {
       ++screen.disordered;
-    } else if (sample.field_M == screen.usable.back().field_M) {
+    } else if (before != nullptr && sample.field_M == before->field_M) {
       ++screen.repeated;
       screen.longest_frozen_s = std::max(screen.longest_frozen_s, (sample.time - frozen_since).seconds());
     } else {

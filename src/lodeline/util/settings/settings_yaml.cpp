@@ -47,7 +47,6 @@ std::vector<size_t> sectionOrder(const std::vector<std::string>& keys) {
   }
   std::sort(ranked.begin(), ranked.end());
   std::vector<size_t> order;
-  order.reserve(ranked.size());
   for (const auto& [ranks, index] : ranked) order.push_back(index);
   return order;
 }

@@ -45,7 +45,7 @@ std::string_view textAt(std::span<const uint8_t> bytes, size_t offset, size_t si
 
 }  // namespace
 
-DataFlash::DataFlash(std::unique_ptr<ByteSource> bytes, std::string file) : bytes_(std::move(bytes)) {
+DataFlash::DataFlash(std::unique_ptr<ByteSource> bytes, const std::string& file) : bytes_(std::move(bytes)) {
   const std::span<const uint8_t> head = bytes_.peek(kDataFlashHeader);
   if (head.size() < kDataFlashHeader || !std::equal(kMark.begin(), kMark.end(), head.begin())) {
     throw InputError(file + ": does not begin as a DataFlash log of ArduPilot; copy the file again");

@@ -17,7 +17,7 @@ namespace lodeline {
 /// where the file does not begin as a DataFlash log.
 class DataFlash : public MessageLog {
  public:
-  DataFlash(std::unique_ptr<ByteSource> bytes, std::string file);
+  DataFlash(std::unique_ptr<ByteSource> bytes, const std::string& file);
 
   bool next(LogMessage* message) override;
 

@@ -225,7 +225,7 @@ class RecordingConversion {
     do {
       if (!reader->next(&row)) return std::nullopt;
     } while (!source_.contains(row.time));
-    if (row.text.size() > 0) {
+    if (!row.text.empty()) {
       diagnostics_->report(Severity::Notice, "convert_truth",
                            fmt::format("{}: velocities and biases are left out; a bag keeps the true poses",
                                        reader->file().string()));
