@@ -28,10 +28,10 @@ double readWithin(const char* key, double least, double most, CalibrationMap* ma
 }  // namespace
 
 Vec3 CalibrationBoard::corner_T(int index) const {
-  const int tag = index / 4, corner = index % 4;
+  const int tag = index / 4, corner = index % 4, row = tag / columns;
   const bool is_right = corner == 1 || corner == 2, is_upper = corner >= 2;
   return Vec3(tag % columns * pitch_m() + (is_right ? tag_size_m : 0.0),
-              tag / columns * pitch_m() + (is_upper ? tag_size_m : 0.0), 0.0);
+              row * pitch_m() + (is_upper ? tag_size_m : 0.0), 0.0);
 }
 
 CalibrationBoard readBoard(const std::filesystem::path& file) {

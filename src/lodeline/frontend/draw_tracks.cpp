@@ -30,7 +30,7 @@ cv::Scalar colourOfAge(int observations, int old_observations) {
   static const cv::Mat colours = turboColours();
   const double age =
       std::clamp(static_cast<double>(observations - 1) / std::max(1, old_observations - 1), 0.0, 1.0);
-  const auto bgr = colours.at<cv::Vec3b>(static_cast<int>(std::lround(30.0 + 210.0 * age)));
+  const auto& bgr = colours.at<cv::Vec3b>(static_cast<int>(std::lround(30.0 + 210.0 * age)));
   return {static_cast<double>(bgr[0]), static_cast<double>(bgr[1]), static_cast<double>(bgr[2])};
 }
 

@@ -21,8 +21,8 @@ std::vector<std::shared_ptr<const Camera>> makeCameras(const Rig& rig) {
 }
 
 bool isMasked(const cv::Mat& mask, const Eigen::Vector2f& pixel) {
-  return !mask.empty() &&
-         mask.at<uint8_t>(static_cast<int>(pixel.y() + 0.5F), static_cast<int>(pixel.x() + 0.5F)) == 0;
+  return !mask.empty() && mask.at<uint8_t>(static_cast<int>(std::lround(pixel.y())),
+                                           static_cast<int>(std::lround(pixel.x()))) == 0;
 }
 
 }  // namespace

@@ -193,7 +193,7 @@ class Comparison {
     result->body_from_gyroscope = regression(moments);
     const Eigen::JacobiSVD<Mat3> svd(moments.cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Mat3 any = svd.matrixU() * svd.matrixV().transpose();
-    const Vec3 sizes = svd.singularValues();
+    const Vec3& sizes = svd.singularValues();
     // If the best rotation is improper, a proper one loses twice the smallest singular value.
     const double proper = sizes.sum() - 2.0 * (any.determinant() < 0.0 ? sizes[2] : 0.0);
     constexpr double kMuchBetter = 0.95;

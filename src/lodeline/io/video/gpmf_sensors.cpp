@@ -122,7 +122,7 @@ void GpmfSensors::addSensor(const std::string& key, Quantity quantity, const cha
   Sensor sensor{gpmf::SampleClock(record.payloads, frame_clock), gpmf::axesOf(record.first), *to_si,
                 record.first.delay_s};
   for (const std::string& problem : sensor.clock.problems()) {
-    diagnostics_->report(Severity::Warning, "telemetry_lost", where + ": " + problem);
+    diagnostics_->report(Severity::Warning, "telemetry_lost", fmt::format("{}: {}", where, problem));
   }
   const std::string& problem = sensor.axes.problem;
   if (!problem.empty() || !sensor.axes.is_known) {
