@@ -60,7 +60,7 @@ std::optional<FrameErrors> frameErrors(std::vector<double> errors_sigmas, const 
   constexpr double kLeast_sigmas = 0.02;
   if (errors_sigmas.size() < kEnough) return std::nullopt;
   const double median = std::max(lodeline::median(errors_sigmas), kLeast_sigmas);
-  const double ratio = orderStatistic(errors_sigmas, 0.9) / median;
+  const double ratio = orderStatistic(std::move(errors_sigmas), 0.9) / median;
   const double narrowing = std::sqrt(std::expm1(kNormalTail * kLn2) / std::expm1(tailOf(ratio) * kLn2));
   const double sigma = median / std::sqrt(2.0 * kLn2);  // by the median of a Rayleigh distribution
   return FrameErrors{
