@@ -5,7 +5,7 @@
 
 namespace lodeline {
 
-BlockSkylineCholesky::BlockSkylineCholesky(std::vector<int> sizes, std::vector<int> first)
+BlockSkylineCholesky::BlockSkylineCholesky(const std::vector<int>& sizes, std::vector<int> first)
     : offsets_(1, 0), first_(std::move(first)) {
   for (const int size : sizes) offsets_.push_back(offsets_.back() + size);
   for (int row = 0; row < blocks(); ++row)

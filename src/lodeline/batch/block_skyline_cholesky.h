@@ -13,7 +13,7 @@ namespace lodeline {
 class BlockSkylineCholesky {
  public:
   /// `sizes`: of the block rows; `first`: first block column of each row, at most the row's own number.
-  BlockSkylineCholesky(std::vector<int> sizes, std::vector<int> first);
+  BlockSkylineCholesky(const std::vector<int>& sizes, std::vector<int> first);
 
   int size() const { return offsets_.back(); }
   int blocks() const { return static_cast<int>(first_.size()); }

@@ -65,7 +65,7 @@ Rotation bestRotation(const Mat3& covariance) {
   const Eigen::JacobiSVD<Mat3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Vec3 signs = Vec3::Ones();
   if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) signs.z() = -1.0;
-  const Vec3 singular = svd.singularValues();
+  const Vec3& singular = svd.singularValues();
   return {svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose(), singular.dot(signs),
           singular(0) > 0.0 && singular(1) > kDegenerateRatio * singular(0)};
 }

@@ -7,7 +7,7 @@
 namespace lodeline {
 namespace {
 
-nlohmann::ordered_json list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+nlohmann::ordered_json components(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 std::string residualRow(const char* name, const CurrentResidual& residual) {
   return fmt::format("  {:<20}{:8.3f} uT {:8.2f} degrees of heading, {:.2f} at worst\n", name,
@@ -74,7 +74,7 @@ nlohmann::ordered_json currentJson(const CurrentCalibrationResult& result) {
   for (const CurrentChannel& channel : fit.channels) {
     nlohmann::ordered_json& entry = json["channels"].emplace_back();
     entry["name"] = channel.name;
-    entry["field_T_per_A"] = list(channel.field_T_per_A);
+    entry["field_T_per_A"] = components(channel.field_T_per_A);
     entry["sigma_T_per_A"] = channel.sigma_T_per_A;
     entry["largest_A"] = channel.largest_A;
     entry["largest_field_T"] = channel.largestField_T();
@@ -101,7 +101,7 @@ nlohmann::ordered_json currentJson(const CurrentCalibrationResult& result) {
   check["chi_square"] = result.check->contradiction.chi_square;
   check["degrees_of_freedom"] = result.check->contradiction.degrees_of_freedom;
   for (size_t i = 0; i < fit.channels.size(); ++i)
-    check["differences_T_per_A"][fit.channels[i].name] = list(result.check->differences_T_per_A[i]);
+    check["differences_T_per_A"][fit.channels[i].name] = components(result.check->differences_T_per_A[i]);
   return json;
 }
 
