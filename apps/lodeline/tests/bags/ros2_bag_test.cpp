@@ -176,6 +176,24 @@ TEST_F(Ros2BagTest, InspectListsTopicsAndMessages) {
                     HasSubstr("encoding: \"mono8\", is_bigendian: 0, step: "), HasSubstr(" elements)]}")));
 }
 
+TEST_F(Ros2BagTest, ReadsNoTopicWhoseMetadataStatesAnotherSerialization) {
+  for (const char* format : {"db3", "mcap"}) {
+    const std::filesystem::path bag = path(fmt::format("folder_{}", format));
+    convert(recording_.data, bag.filename().string(), fmt::format("--format {}", format));
+    editLines(bag / "metadata.yaml", [](std::vector<std::string>& lines) {
+      for (std::string& line : lines) {
+        const size_t at = line.find("serialization_format: cdr");
+        if (at != std::string::npos) line = line.substr(0, at) + "serialization_format: other";
+      }
+    });
+    const Execution messages = runProgram(fmt::format("inspect {} --messages 3", quoted(bag)));
+    EXPECT_THAT(messages.output, HasSubstr("serialization format 'other' of its messages is not read"))
+        << format;
+    EXPECT_EQ(messages.output.find("angular_velocity"), std::string::npos) << format;
+    EXPECT_EQ(runProgram(fmt::format("run {} -o {}", quoted(bag), quoted(output_))).exit_code, 1) << format;
+  }
+}
+
 TEST_F(Ros2BagTest, RefusesACompressionThatTheFormatDoesNotHave) {
   for (const char* wrong : {"a.mcap bz2", "a.db3 zstd", "a.bag zstd"}) {
     const std::string text(wrong);
