@@ -126,10 +126,10 @@ TEST_F(Ros2BagTest, OtherProgramsReadTheSameInEveryCompression) {
 TEST_F(Ros2BagTest, OtherProgramsReadTheReadingsAndPixelsOfTheRecording) {
   LODELINE_NEEDS_MCAP_PACKAGES;
   convert(recording_.data, "bag.db3");
-  convert(path("bag.db3"), "bag.mcap");
+  convert(path("bag.db3"), "from_bag.mcap");
   std::vector<std::string> read_rows;
   size_t images = 0;
-  std::istringstream lines(foreign("values", "bag.mcap"));
+  std::istringstream lines(foreign("values", "from_bag.mcap"));
   std::string time, topic, type, json;
   while (lines >> time >> topic >> type && std::getline(lines, json)) {
     const nlohmann::json message = nlohmann::json::parse(json);
