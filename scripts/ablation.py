@@ -6,19 +6,20 @@ means over the dives of error without the mechanism / error with it, in position
 the mechanism helps. The dives have three IMUs, clean and field realism, and two cameras or one. A real recording is added if
 there is one.
 
-    ablation.py WORK [--program build/release/bin/lodeline] [--only NAME ...] [--markdown FILE]
+    ablation.py WORK [--program build/release/bin/lodeline] [--only NAME ...] [--jobs N] [--markdown FILE]
 
-WORK keeps rendered dives and finished runs; a second call goes on where the first one ended.
+WORK keeps rendered dives and is the output of `lodeline batch`: a second call makes only the runs that are missing.
 """
 
 import argparse
-import json
 import math
 import os
+import re
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+
+from batch_runs import run_batch
 
 ROOT = Path(__file__).resolve().parent.parent
 SECONDS = 40
@@ -27,7 +28,6 @@ RIGS = [("cave1_short", "gx5-25", 7103), ("dos_ojos", "gv7", 7211), ("demo", "co
 
 # Mechanism, settings that switch it off, and whether it needs the magnetometer.
 MECHANISMS = [
-    ("as it is", [], False),
     ("landmark linearization cache", ["window.frozen_frames=0"], False),
     ("intrinsics model selection", ["camera_calibration.trust_confirmed_files=false"], False),
     ("intrinsics as states", ["camera_calibration.intrinsics=false"], False),
@@ -82,28 +82,24 @@ class Text:
         return [str(part) for part in command]
 
 
-def errors(program, work, recording, mono, settings):
-    """Position (m) and rotation (deg) error of one run; a finished run is read again."""
-    name, folder, calibration = recording
-    key = "default" if not settings else "_".join(settings).replace("/", "_")
-    out = work / "runs" / f"{name}_{'mono' if mono else 'stereo'}" / key
-    figures = out / "figures.json"
-    if not figures.exists():
-        command = [program, "run", folder, "-o", out, "--overwrite", "--quiet"]
-        for setting in settings + (["source.cameras=[0]"] if mono else []):
-            command += ["--set", setting]
-        if calibration and "magnetometer.calibration=" not in settings:
-            command += ["--mag-calibration", calibration]
-        call(command | Text())
-        truths = [folder / "mav0/state_groundtruth_estimate0" / name for name in ("data.csv", "gt_tum.txt")]
-        truth = next(file for file in truths if file.exists())
-        call([program, "evaluate", out, truth, "--interpolate", "--align", "se3", "--json", figures] | Text())
-    read = json.loads(figures.read_text())
-    return position_and_rotation(read)
+def variant(name, cameras):
+    return re.sub("[^a-z0-9]+", "_", name.lower()) + ("_left" if cameras == 1 else "_stereo")
 
 
-def position_and_rotation(figures):
-    return figures["absolute"]["position_m"]["rmse"], figures["absolute"]["rotation_deg"]["rmse"]
+def measure(program, work, recordings, mechanisms, jobs):
+    """Runs all recordings without each mechanism by `lodeline batch`. Returns position (m) and rotation (deg) errors by the
+    names of recording and variant."""
+    variants = [{"name": variant(name, cameras), "set": settings + (["source.cameras=[0]"] if cameras == 1 else [])}
+                for name, settings in mechanisms for cameras in (2, 1)]
+    listed = {"args": ["--no-report"], "variants": variants,
+              "recordings": [{"name": name, "data": str(folder.resolve()), "truth": str(folder.resolve()),
+                              "args": ["--mag-calibration", str(calibration.resolve())] if calibration else []}
+                             for name, folder, calibration in recordings]}
+    rows = run_batch(program, work, listed, jobs).values()
+    if any(not row["position_rmse_m"] for row in rows):
+        sys.exit(f"{work}/table.md says which runs have no errors")
+    return {(row["recording"], row["variant"]): (float(row["position_rmse_m"]), float(row["rotation_rmse_deg"]))
+            for row in rows}
 
 
 def geometric_mean(values):
@@ -123,20 +119,17 @@ def main():
     parser.add_argument("--markdown", type=Path, help="file for the table")
     arguments = parser.parse_args()
     recordings = render(arguments.program, arguments.work)
-    dives = [(recording, mono) for recording in recordings for mono in (False, True)]
-
-    def measure(settings):
-        with ThreadPoolExecutor(arguments.jobs) as pool:
-            return list(pool.map(lambda dive: errors(arguments.program, arguments.work, *dive, settings), dives))
-
+    chosen = [mechanism for mechanism in MECHANISMS if not arguments.only or mechanism[0] in arguments.only]
+    references = {False: "no magnetometer", True: "default"}
+    tried = {"no magnetometer": ["magnetometer.model=off"], "default": []}
+    for name, settings, magnetic in chosen:
+        tried[name] = settings if magnetic else ["magnetometer.model=off", *settings]
+    errors = measure(arguments.program, arguments.work, recordings, tried.items(), arguments.jobs)
     columns = ["mechanism left out", "position, ratio", "rotation, ratio", "worst position", "worst rotation"]
     lines = [row(columns), row(["---"] * len(columns))]
-    references = {False: measure(["magnetometer.model=off"]), True: measure([])}
-    for name, settings, magnetic in MECHANISMS:
-        if not settings or (arguments.only and name not in arguments.only):
-            continue
-        tried = settings if magnetic else ["magnetometer.model=off", *settings]
-        pairs = list(zip(measure(tried), references[magnetic]))
+    for name, _, magnetic in chosen:
+        pairs = [(errors[dive, variant(name, cameras)], errors[dive, variant(references[magnetic], cameras)])
+                 for dive, *_ in recordings for cameras in (2, 1)]
         ratios = [[without[i] / reference[i] for without, reference in pairs] for i in range(2)]
         means, worst = [f"{geometric_mean(r):.3f}" for r in ratios], [f"{max(r):.2f}" for r in ratios]
         lines.append(row([name, *means, *worst]))

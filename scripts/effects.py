@@ -5,10 +5,11 @@ Renders dives with the effects of `clean`, the same with each further effect alo
 stereo. Runs `lodeline run` on each with both cameras and with one, and prints a table. With several seeds, drift, scale and
 position are root mean squares, and the other figures are those of all poses together.
 
-    effects.py WORK [--program build/release/bin/lodeline] [--only EFFECT ...] [--seeds N] [--seconds S] [--markdown FILE]
+    effects.py WORK [--program build/release/bin/lodeline] [--only EFFECT ...] [--seeds N] [--seconds S] [--jobs N]
+               [--markdown FILE]
 
-WORK keeps rendered dives and finished runs; a second call goes on where the first one ended. `--only clean all` measures the
-dive without further effects and with all of them.
+WORK is the output of `lodeline batch`: a second call makes only what is missing, and makes all again with another build.
+`--only clean all` measures the dive without further effects and with all of them.
 """
 
 import argparse
@@ -16,13 +17,16 @@ import bisect
 import csv
 import json
 import math
-import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+from batch_runs import run_batch
+
 ROOT = Path(__file__).resolve().parent.parent
 SCENARIO, FIRST_SEED = "demo", 4001
+# Variants of the batch by their number of cameras.
+VARIANTS = {2: {"name": "stereo"}, 1: {"name": "left", "set": {"source.cameras": [0]}}}
 COLUMNS = ["effect", "cameras", "heading drift, °/100 m", "scale error, %", "position rms, % of path",
            "position within 3 σ, %", "heading within 3 σ, %", "σ / error, position", "σ / error, heading"]
 # Effects of a vehicle or a wreck of steel, which the scenario does not have.
@@ -48,33 +52,32 @@ def cases(program):
             found[name] = sum((["--effect", assignment] for assignment in [f"{name}=on", *TOGETHER.get(name, [])]), [])
     found["field"] = ["--realism", "field"]
     found["all"] = ["--realism", "physical"]
-    found["all, dome"] = ["--realism", "physical", "--effect", "dome_port=on"]
+    found["all_dome"] = ["--realism", "physical", "--effect", "dome_port=on"]
     return found
 
 
-def render(program, folder, seed, options, arguments):
-    if (folder / "finished").exists():
-        return
-    shutil.rmtree(folder, ignore_errors=True)
-    print("rendering", folder.name, flush=True)
-    call([program, "simulate", SCENARIO, "--seconds", arguments.seconds, "--width", arguments.width, "--camera-rate-hz", 10,
-          "--seed", seed, "--imu", arguments.imu, "--quiet", "-o", folder, *options])
-    (folder / "finished").touch()
+def make_runs(found, seeds, arguments):
+    """Simulates and runs all dives by `lodeline batch`. Returns the folder of each run by its name."""
+    dive = [SCENARIO, "--seconds", arguments.seconds, "--width", arguments.width, "--camera-rate-hz", 10, "--imu",
+            arguments.imu]
+    listed = {"args": ["--no-report"], "variants": list(VARIANTS.values()), "seeds": list(seeds),
+              "recordings": [{"name": name, "simulate": [*dive, *options]} for name, options in found.items()]}
+    rows = run_batch(arguments.program, arguments.work, listed, arguments.jobs)
+    # A run that ends with an error may have a trajectory.
+    return {name: arguments.work / ("failed" if row["status"] == "failed" else "results") / name
+            for name, row in rows.items()}
 
 
-def run(program, folder, out, cameras):
-    """Runs the estimator and returns the figures of `lodeline evaluate`, aligned without and with scale."""
+def evaluate(program, folder, out):
+    """Figures of `lodeline evaluate`, aligned without and with scale; None where the run has no trajectory."""
     figures = []
-    if not (out / "run.json").exists():
-        only = ["--set", "source.cameras=[0]"] if cameras == 1 else []
-        call([program, "run", folder, "-o", out, "--overwrite", "--quiet", "--no-report", *only])
     if not (out / "states.csv").exists():
         return None
     truth = folder / "mav0/state_groundtruth_estimate0/data.csv"
     for alignment in ("se3", "sim3"):
         file = out / f"{alignment}.json"
-        if not file.exists():
-            call([program, "evaluate", out, truth, "--interpolate", "--align", alignment, "--json", file])
+        file.unlink(missing_ok=True)
+        call([program, "evaluate", out, truth, "--interpolate", "--align", alignment, "--json", file])
         if not file.exists():
             return None
         figures.append(json.loads(file.read_text()))
@@ -184,25 +187,25 @@ def main():
     parser.add_argument("--seconds", type=float, default=45)
     parser.add_argument("--width", type=int, default=480)
     parser.add_argument("--imu", default="gx5-25")
+    parser.add_argument("--jobs", type=int, default=1, help="number of runs at a time")
     parser.add_argument("--markdown", type=Path, help="file for the table")
     arguments = parser.parse_args()
     found = cases(arguments.program)
     unknown = set(arguments.only or []) - set(found)
     if unknown:
         sys.exit(f"no such effect: {', '.join(sorted(unknown))}; there are {', '.join(found)}")
+    found = {name: options for name, options in found.items() if not arguments.only or name in arguments.only}
+    seeds = range(FIRST_SEED, FIRST_SEED + arguments.seeds)
+    runs = make_runs(found, seeds, arguments)
     lines = [row(COLUMNS), row(["---"] * len(COLUMNS))]
     print("\n".join(lines), flush=True)
-    for name, options in found.items():
-        if arguments.only and name not in arguments.only:
-            continue
-        dives = {2: [], 1: []}
-        for seed in range(FIRST_SEED, FIRST_SEED + arguments.seeds):
-            key = f"{name.replace(', ', '_')}_{seed}_{arguments.seconds:g}s_{arguments.width}px_{arguments.imu}"
-            folder = arguments.work / "dives" / key
-            render(arguments.program, folder, seed, options, arguments)
-            for cameras in dives:
-                out = arguments.work / "runs" / f"{key}_{cameras}"
-                figures = run(arguments.program, folder, out, cameras)
+    for name in found:
+        dives = {cameras: [] for cameras in VARIANTS}
+        for seed in seeds:
+            folder = arguments.work / "recordings" / f"{name}.{seed}"
+            for cameras, variant in VARIANTS.items():
+                out = runs[f"{name}.{variant['name']}.{seed}"]
+                figures = evaluate(arguments.program, folder, out)
                 if figures:
                     dives[cameras].append(Dive(figures, Errors(out, folder)))
         for cameras, measurements in dives.items():

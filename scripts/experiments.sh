@@ -40,7 +40,7 @@ measureColmap() {
   fi
   printf '\n== colmap_baseline.sh %s\n' "$dive"
   scripts/colmap_baseline.sh "$experiments/$dive" "$experiments/colmap" --from 30 --to 70 --every 4 \
-    --runs "$experiments/results/$dive/$dive" --report "$experiments/results/colmap.md" || failed+=(colmap)
+    --runs "$experiments/results/$dive/results" --report "$experiments/results/colmap.md" || failed+=(colmap)
 }
 
 section() {  # NAME_REALISM

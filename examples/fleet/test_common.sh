@@ -12,7 +12,7 @@ prepare_fleet() {
   {
     echo 'args: [--no-report]'
     echo 'recordings:'
-    echo '  - {name: dive, simulate: open_water --seconds 3 --starts-moving --width 240 --threads 1}'
+    echo '  - {name: dive, simulate: open_water --seconds 3 --starts-moving --width 160 --camera-rate-hz 10 --threads 1}'
     echo "seeds: [$(seq -s, "$3")]"
     echo 'variants:'
     for variant in $(seq $(($2 / $3))); do echo "  - {name: v$variant, set: {front_end.seed: $variant}}"; done

@@ -67,6 +67,13 @@ void runBatch(const BatchArguments& arguments) {
 
 }  // namespace
 
+void addBatchRunOptions(BatchWork* work, CLI::App* command) {
+  command->add_option("--jobs", work->jobs, "number of runs at a time")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->add_flag("--retry", work->retry, "make items again that failed before");
+}
+
 void addBatchWorkOptions(BatchWork* work, CLI::App* command) {
   command
       ->add_option_function<std::string>(
@@ -74,10 +81,7 @@ void addBatchWorkOptions(BatchWork* work, CLI::App* command) {
           "make only part I of N of the items")
       ->type_name("I/N")
       ->default_str("1/1");
-  command->add_option("--jobs", work->jobs, "number of runs at a time")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  command->add_flag("--retry", work->retry, "make items again that failed before");
+  addBatchRunOptions(work, command);
   command->add_flag_callback(
       "--no-wait", [work] { work->wait = false; }, "end where other processes still work on items");
   command

@@ -13,6 +13,9 @@ class BatchError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Adds --jobs and --retry. `work` must live as long as the command.
+void addBatchRunOptions(BatchWork* work, CLI::App* command);
+
 /// Adds the options on how one process works on a batch. `work` must live as long as the command.
 void addBatchWorkOptions(BatchWork* work, CLI::App* command);
 

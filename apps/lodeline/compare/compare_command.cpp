@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <memory>
 
+#include "apps/lodeline/batch/batch_command.h"
+#include "apps/lodeline/batch/batch_summary.h"
+#include "apps/lodeline/batch/batch_worker.h"
 #include "apps/lodeline/compare/compared_run.h"
 #include "apps/lodeline/shared/bag_options.h"
 #include "apps/lodeline/shared/common_options.h"
@@ -30,17 +33,6 @@ Examples:
   lodeline compare dive1 dive2 --methods off,absolute --runs 1 --mag-calibration mag.yaml -o compared
   lodeline compare cave1_short --realism field --cameras 0 -o left_camera)";
 
-/// The ground truth of the recording.
-Trajectory readTruth(const std::filesystem::path& data) {
-  Diagnostics diagnostics;
-  try {
-    return readTrajectory(data, {}, diagnostics);
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: methods are compared by ground truth, which it lacks ({})",
-                                 data.string(), error.what()));
-  }
-}
-
 /// Length of the true path while images are used.
 double pathBetween_m(Trajectory truth, Time begin, Time end) {
   std::erase_if(truth.poses, [&](const StampedPose& pose) { return pose.time < begin || pose.time > end; });
@@ -49,34 +41,44 @@ double pathBetween_m(Trajectory truth, Time begin, Time end) {
 
 /// Unique name for each recording: recordings of equal name in different folders would write to the same
 /// folder.
-std::string distinctName(const std::string& name, const std::vector<ComparedRecording>& others) {
+std::string distinctName(const std::string& name, const std::vector<ComparisonInput>& others) {
   const auto isTaken = [&](const std::string& wanted) {
     return std::any_of(others.begin(), others.end(),
-                       [&](const ComparedRecording& other) { return other.name == wanted; });
+                       [&](const ComparisonInput& other) { return other.name == wanted; });
   };
   std::string distinct = name;
   for (int number = 2; isTaken(distinct); ++number) distinct = fmt::format("{}_{}", name, number);
   return distinct;
 }
 
-/// Returns false where the user stopped a run.
-bool makeRuns(const ComparisonInput& input, const ComparisonRequest& request, ComparedRecording* recording) {
-  const Trajectory truth = readTruth(input.seeds.front().data);
-  recording->name = input.name;
-  recording->extent =
+std::vector<ComparisonInput> prepareAll(const ComparisonRequest& request) {
+  std::vector<ComparisonInput> inputs;
+  for (const std::string& name : request.inputs) {
+    ComparisonInput input;
+    if (!prepareComparison(name, request, &input)) {
+      throw Interruption("the same command goes on from there");
+    }
+    input.name = distinctName(input.name, inputs);
+    inputs.push_back(std::move(input));
+  }
+  return inputs;
+}
+
+ComparedRecording judgeRecording(const ComparisonInput& input, const std::vector<std::string>& methods,
+                                 const std::vector<BatchRow>& rows, const BatchFolder& folder) {
+  ComparedRecording recording;
+  recording.name = input.name;
+  recording.extent =
       fmt::format("{}: {}, {:.1f} m, {} run{} a method", input.origin, input.extent,
-                  pathBetween_m(truth, input.expected_stamps.front(), input.expected_stamps.back()),
+                  pathBetween_m(input.truth, input.expected_stamps.front(), input.expected_stamps.back()),
                   input.seeds.size(), input.seeds.size() == 1 ? "" : "s");
-  for (const std::string& method : request.methods) {
-    recording->methods.push_back({method, {}});
+  for (const std::string& method : methods) {
+    recording.methods.push_back({method, {}});
     for (const ComparisonSeed& seed : input.seeds) {
-      if (!request.run.quiet) fmt::print(stderr, "{}: {}, {}\n", input.name, method, seed.name);
-      const auto run = makeComparedRun(input, seed, method, request.output / input.name, truth);
-      if (!run) return false;
-      recording->methods.back().runs.push_back(*run);
+      recording.methods.back().runs.push_back(judgeComparedRun(input, seed, method, rows, folder));
     }
   }
-  return true;
+  return recording;
 }
 
 void writeResults(const std::vector<ComparedRecording>& recordings, const ComparisonRequest& request) {
@@ -120,16 +122,15 @@ void checkRequest(const ComparisonRequest& request) {
 void compare(ComparisonRequest request) {
   checkRequest(request);
   request.run = requestOf(request.arguments);
-  createOutputFolder(request.output);
+  request.work.quiet = request.run.quiet;
+  const std::vector<ComparisonInput> inputs = prepareAll(request);
+  const BatchFolder folder(request.output);
+  const BatchList list = comparedRuns(inputs, request.methods);
+  workOnBatch(list, folder, request.work);
+  const std::vector<BatchRow> rows = batchRows(list, folder, {});
   std::vector<ComparedRecording> recordings;
-  for (const std::string& name : request.inputs) {
-    ComparisonInput input;
-    ComparedRecording recording;
-    bool finished = prepareComparison(name, request, &input);
-    input.name = distinctName(input.name, recordings);
-    finished = finished && makeRuns(input, request, &recording);
-    if (!finished) throw Interruption("the same command goes on from there");
-    recordings.push_back(std::move(recording));
+  for (const ComparisonInput& input : inputs) {
+    recordings.push_back(judgeRecording(input, request.methods, rows, folder));
   }
   writeResults(recordings, request);
   for (const ComparedRecording& recording : recordings) {
@@ -169,6 +170,7 @@ void addCompareCommand(CLI::App& program) {
   command->add_option("--runs", request->runs, "number of runs of each method")
       ->check(CLI::Range(1, 99))
       ->capture_default_str();
+  addBatchRunOptions(&request->work, command);
   addSharedRunOptions(command, &request->arguments);
   addBagOptions(&request->arguments.request.bag, command);
   addRecordingPart(&request->arguments.part, command);

@@ -2,72 +2,58 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "apps/lodeline/compare/azimuth_method.h"
-#include "apps/lodeline/shared/program_file.h"
 #include "lodeline/diagnostics.h"
 #include "lodeline/evaluation/trajectory/text_table.h"
 #include "lodeline/trajectory.h"
-#include "lodeline/util/files/output_file.h"
-#include "lodeline/version.h"
 
 namespace lodeline {
 namespace {
 
 namespace fs = std::filesystem;
 
-const char* const kDoneFile = "made_from.txt";
+const char* const kAzimuth = "azimuth";
 
-/// Text of everything that influences the result, to detect whether a run exists already.
-std::string identity(const RunRequest& request) {
-  RunSettings options;
-  Settings settings;
-  applyRequest(request, &settings, &options);
-  std::ostringstream text;
-  text << fmt::format("lodeline {}, build {:016x}\n", LODELINE_VERSION, programFingerprint())
-       << fs::weakly_canonical(request.data).string() << "\n";
-  const fs::path mav0 = fs::is_directory(fs::path(request.data) / "mav0") ? fs::path(request.data) / "mav0"
-                                                                          : fs::path(request.data);
-  for (const char* sensor : {"cam0", "cam1", "imu0", "mag0", "pressure0"}) {
-    for (const char* file : {"data.csv", "sensor.yaml"}) {
-      const fs::path path = mav0 / sensor / file;
-      std::error_code missing;
-      const auto size = fs::file_size(path, missing);
-      if (!missing) text << sensor << "/" << file << ": " << size << " bytes\n";
-    }
-  }
-  settings.write(text);
-  if (!options.magnetometer_calibration.empty()) text << readFileBytes(options.magnetometer_calibration);
-  for (const std::string& file : request.bag.rig_files) text << readFileBytes(file);
-  return text.str();
+/// Setting magnetometer.model of the runs of a method.
+std::string modelOf(const std::string& method) { return method == kAzimuth ? "off" : method; }
+
+/// RECORDING.METHOD.SEED, without blanks.
+std::string runName(const ComparisonInput& input, const std::string& method, const ComparisonSeed& seed) {
+  std::string name = fmt::format("{}.{}.{}", input.name, method, seed.name);
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
 }
 
-nlohmann::json readSummary(const fs::path& folder) {
-  return nlohmann::json::parse(readFileBytes(folder / "run.json"));
+/// Words of `lodeline run` for the options of a comparison.
+std::vector<std::string> runWords(const RunRequest& request) {
+  std::vector<std::string> words = {"--no-report"};
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) words.insert(words.end(), {option, value});
+  };
+  add("--config", request.config);
+  for (const std::string& setting : request.overrides) add("--set", setting);
+  add("--mag-calibration", request.magnetometer_calibration);
+  add("--site", request.site);
+  add("--date", request.date);
+  for (const std::string& file : request.bag.rig_files) add("--rig", file);
+  for (const std::string& topic : request.bag.topics) add("--topic", topic);
+  if (request.bag.use_received_times) words.emplace_back("--received-times");
+  return words;
 }
 
-/// Whether the folder contains the complete run; another, incomplete run may have replaced it.
-bool isDone(const fs::path& folder, const std::string& made_from) {
-  if (!fs::exists(folder / kDoneFile) || readFileBytes(folder / kDoneFile) != made_from) return false;
-  if (!fs::exists(folder / "run.json")) return false;
-  constexpr bool kThrow = false;  // a truncated file is not that of a complete run
-  const auto summary = nlohmann::json::parse(readFileBytes(folder / "run.json"), nullptr, kThrow);
-  return summary.is_object() && !summary.value("interrupted", true);
-}
-
-/// Returns false where the user stopped the run.
-bool estimate(const RunRequest& request) {
-  const fs::path folder = request.output;
-  const std::string made_from = identity(request);
-  if (isDone(folder, made_from)) return true;
-  std::error_code ignored;
-  fs::remove(folder / kDoneFile, ignored);
-  Diagnostics diagnostics;
-  if (runRecording(request, &diagnostics).interrupted) return false;
-  writeOutput(folder / kDoneFile, made_from);
-  return true;
+BatchItem itemOf(const ComparisonInput& input, const std::string& model, const ComparisonSeed& seed) {
+  BatchItem item;
+  item.name = runName(input, model, seed);
+  item.recording = input.name;
+  item.variant = model;
+  item.data = fs::weakly_canonical(seed.data).string();
+  item.arguments = runWords(input.run);
+  item.arguments.insert(item.arguments.end(), {"--magnetometer", model, "--set",
+                                               fmt::format("front_end.seed={}", seed.feature_seed)});
+  return item;
 }
 
 /// Heading basis of a run from its summary. Methods are compared with each other and with a corrected azimuth
@@ -82,53 +68,71 @@ Trajectory readPoses(const fs::path& folder) {
   return readTrajectory(folder / "trajectory.tum", {}, diagnostics);
 }
 
-void judge(const Trajectory& trajectory, const Trajectory& truth, HeadingBasis basis,
-           const ComparisonInput& input, ComparedRun* run) {
+void judge(const Trajectory& trajectory, HeadingBasis basis, const ComparisonInput& input, ComparedRun* run) {
   EvaluationOptions options;
   options.association.method = AssociationMethod::Interpolate;
   // A ground truth at a few hertz suffices for a swimmer; the tolerance is below half an image period.
   options.association.tolerance_s = 0.02;
   options.expected_stamps = input.expected_stamps;
   Diagnostics diagnostics;
-  run->errors = computeRunErrors(trajectory, truth, basis, options, diagnostics);
+  run->errors = computeRunErrors(trajectory, input.truth, basis, options, diagnostics);
   run->completion = run->errors->completion.share;
 }
 
 }  // namespace
 
 bool isComparedMethod(const std::string& name) {
-  return name == "off" || name == "paper" || name == "absolute" || name == "azimuth";
+  return name == "off" || name == "paper" || name == "absolute" || name == kAzimuth;
 }
 
-std::optional<ComparedRun> makeComparedRun(const ComparisonInput& input, const ComparisonSeed& seed,
-                                           const std::string& method, const fs::path& input_folder,
-                                           const Trajectory& truth) {
-  const bool by_azimuth = method == "azimuth";
-  RunRequest request = input.run;
-  request.data = seed.data.string();
-  request.magnetometer = by_azimuth ? "off" : method;
-  request.overwrite = true;
-  request.overrides.push_back(fmt::format("front_end.seed={}", seed.feature_seed));
-  const auto folderOf = [&](const std::string& name) {
-    std::string folder = name + "_" + seed.name;
-    for (char& c : folder) c = c == ' ' ? '_' : c;
-    return input_folder / folder;
-  };
-  request.output = folderOf(request.magnetometer).string();
+BatchList comparedRuns(const std::vector<ComparisonInput>& inputs, const std::vector<std::string>& methods) {
+  std::vector<std::string> models;
+  for (const std::string& method : methods) {
+    const std::string model = modelOf(method);
+    if (std::find(models.begin(), models.end(), model) == models.end()) models.push_back(model);
+  }
+  BatchList list;
+  list.folder = fs::current_path();
+  for (const ComparisonInput& input : inputs) {
+    for (const std::string& model : models) {
+      for (const ComparisonSeed& seed : input.seeds) list.items.push_back(itemOf(input, model, seed));
+    }
+  }
+  return list;
+}
+
+ComparedRun judgeComparedRun(const ComparisonInput& input, const ComparisonSeed& seed,
+                             const std::string& method, const std::vector<BatchRow>& rows,
+                             const BatchFolder& folder) {
+  const std::string name = runName(input, modelOf(method), seed);
+  const auto row =
+      std::find_if(rows.begin(), rows.end(), [&](const BatchRow& r) { return r.item->name == name; });
   ComparedRun run;
   run.seed = seed.name;
+  run.failure = row->reason;
+  // A run that ends with an error may have a summary and a trajectory.
+  const fs::path made = row->status == "failed" ? folder.failure(*row->item) : folder.result(*row->item);
+  if (!fs::exists(made / "run.json")) return run;
   try {
-    if (!estimate(request)) return std::nullopt;
-    const nlohmann::json summary = readSummary(request.output);
+    const auto summary = nlohmann::json::parse(readFileBytes(made / "run.json"));
     run.core_ms_per_frame = summary.value("/core_ms_per_frame/total"_json_pointer, 0.0);
     if (summary.value("frames_with_pose", 0) == 0) {
       run.failure = fmt::format("no pose after {} frames; still waiting for {}", summary.value("frames", 0),
                                 summary.value("waiting_for", std::string("images")));
       return run;
     }
-    Trajectory trajectory = readPoses(request.output);
-    if (by_azimuth) trajectory = makeAzimuthRun(request, trajectory, folderOf(method));
-    judge(trajectory, truth, by_azimuth ? HeadingBasis::North : basisOf(summary), input, &run);
+    Trajectory trajectory = readPoses(made);
+    HeadingBasis basis = basisOf(summary);
+    if (method == kAzimuth) {
+      RunRequest request = input.run;
+      request.data = seed.data.string();
+      request.magnetometer = modelOf(method);
+      trajectory =
+          makeAzimuthRun(request, trajectory, folder.path() / "results" / runName(input, method, seed));
+      basis = HeadingBasis::North;
+    }
+    judge(trajectory, basis, input, &run);
+    run.failure.clear();
   } catch (const InputError& error) {
     run.failure = error.what();
   } catch (const EstimationError& error) {

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <filesystem>
-#include <optional>
 #include <string>
+#include <vector>
 
+#include "apps/lodeline/batch/batch_folder.h"
+#include "apps/lodeline/batch/batch_summary.h"
 #include "apps/lodeline/compare/comparison_input.h"
 #include "lodeline/evaluation/errors/comparison.h"
 
@@ -14,13 +15,14 @@ namespace lodeline {
 /// correctHeadingByAzimuth().
 bool isComparedMethod(const std::string& name);
 
-/// Makes one run of a method in its folder and evaluates it with the recording's ground truth. An existing
-/// run from the same recording, settings, calibration and program is not repeated. The reason for a failed
-/// run is in `failure`. Empty where the user stopped it. `input_folder`: the results of this recording, one
-/// folder per method and seed.
-std::optional<ComparedRun> makeComparedRun(const ComparisonInput& input, const ComparisonSeed& seed,
-                                           const std::string& method,
-                                           const std::filesystem::path& input_folder,
-                                           const Trajectory& truth);
+/// The runs that the methods need, as a batch: inputs × models × seeds.
+BatchList comparedRuns(const std::vector<ComparisonInput>& inputs, const std::vector<std::string>& methods);
+
+/// Evaluates one run of a method with the recording's ground truth. `rows` are those of the finished batch.
+/// "azimuth" writes its trajectory beside the results of the batch. The reason for a run without errors is in
+/// `failure`.
+ComparedRun judgeComparedRun(const ComparisonInput& input, const ComparisonSeed& seed,
+                             const std::string& method, const std::vector<BatchRow>& rows,
+                             const BatchFolder& folder);
 
 }  // namespace lodeline

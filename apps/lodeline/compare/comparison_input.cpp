@@ -161,6 +161,17 @@ fs::path convertedRecording(const fs::path& bag, const ComparisonRequest& reques
   return folder;
 }
 
+/// The ground truth of the recording.
+Trajectory readTruth(const fs::path& data) {
+  Diagnostics diagnostics;
+  try {
+    return readTrajectory(data, {}, diagnostics);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: methods are compared by ground truth, which it lacks ({})",
+                                 data.string(), error.what()));
+  }
+}
+
 /// Limits a recording to the part with images, and describes that part.
 void limitToImages(ComparisonInput* prepared) {
   RunSettings options;
@@ -217,6 +228,7 @@ bool prepareComparison(const std::string& input, const ComparisonRequest& reques
     throw UsageError(
         fmt::format("{}: neither a folder, a bag nor a scenario; scenarios are {}", input, names));
   }
+  prepared->truth = readTruth(prepared->seeds.front().data);
   limitToImages(prepared);
   return true;
 }

@@ -4,9 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "apps/lodeline/batch/batch_worker.h"
 #include "apps/lodeline/shared/run_arguments.h"
 #include "lodeline/pipeline/run_recording.h"
 #include "lodeline/simulation.h"
+#include "lodeline/trajectory.h"
 #include "lodeline/types.h"
 
 namespace lodeline {
@@ -24,6 +26,7 @@ struct ComparisonRequest {
   int threads = 0;         ///< for rendering; 0 for all cores
   RunArguments arguments;  ///< of every run, from the command line
   RunRequest run;          ///< the same as one request
+  BatchWork work;          ///< how the runs are made
 };
 
 /// One run to be made: its recording, and its difference to the others.
@@ -39,15 +42,16 @@ struct ComparisonInput {
   std::string origin;  ///< description
   std::vector<ComparisonSeed> seeds;
   RunRequest run;  ///< with calibration, site, date and cameras; data and output are set per run
+  Trajectory truth;
   std::vector<Time> expected_stamps;  ///< of the first camera's images that exist and are used
   std::string extent;                 ///< the part that is used, in words
 };
 
-/// Prepares the recording `input`. A scenario is simulated, unless it exists (sensors once per noise seed,
-/// images once). Its rig's magnetometer is calibrated with `figure_eight` where no calibration is given. A
-/// folder is used as it is, and its runs differ by the front end's seed. If images are missing at the end,
-/// the part before is used. Throws UsageError and InputError; EstimationError where the magnetometer cannot
-/// be calibrated. Returns false where the user ended the simulation.
+/// Prepares the recording `input` and reads its ground truth. A scenario is simulated, unless it exists
+/// (sensors once per noise seed, images once). Its rig's magnetometer is calibrated with `figure_eight` where
+/// no calibration is given. A folder is used as it is, and its runs differ by the front end's seed. If images
+/// are missing at the end, the part before is used. Throws UsageError and InputError; EstimationError where
+/// the magnetometer cannot be calibrated. Returns false where the user ended the simulation.
 bool prepareComparison(const std::string& input, const ComparisonRequest& request, ComparisonInput* prepared);
 
 }  // namespace lodeline

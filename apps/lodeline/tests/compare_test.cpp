@@ -27,8 +27,11 @@ class Compare : public MagneticRoomTest {
   }
 
   nlohmann::json recording() const { return readJson(output_ / "compare.json")["recordings"][0]; }
-  /// Folder of the runs on the room.
-  fs::path runs() const { return output_ / recording_.data.filename(); }
+  /// Folder of a run on the room; `number` follows its name where recordings have the same name.
+  fs::path run(const std::string& method, const std::string& number = "") const {
+    return output_ / "results" /
+           fmt::format("{}{}.{}.features_1", recording_.data.filename().string(), number, method);
+  }
 };
 
 TEST_F(Compare, JudgesMethodsAndMakesNoRunTwice) {
@@ -50,21 +53,15 @@ TEST_F(Compare, JudgesMethodsAndMakesNoRunTwice) {
   EXPECT_THAT(first.output, HasSubstr("in full"));
   EXPECT_THAT(readText(output_ / "compare.md"), HasSubstr("| `azimuth` | 1/1 |"));
 
-  const fs::path states = runs() / "off_features_1" / "states.csv";
+  EXPECT_TRUE(fs::exists(run("azimuth") / "trajectory.tum"));
+  const fs::path states = run("off") / "states.csv";
   const auto written = fs::last_write_time(states);
   const Execution again = compareRoom(options);
   EXPECT_EQ(again.output, first.output);
   EXPECT_EQ(fs::last_write_time(states), written);
-  // A run that the user ended is incomplete, whatever other files exist; so is one with a truncated summary.
-  const fs::path summary = runs() / "off_features_1" / "run.json";
-  nlohmann::json ended = readJson(summary);
-  ended["interrupted"] = true;
-  std::ofstream(summary) << ended;
+  // A result is complete with its item.json, which is written last.
+  std::ofstream(run("off") / "item.json") << "{\"key\": 1";
   EXPECT_EQ(compareRoom(options).exit_code, 0);
-  EXPECT_FALSE(readJson(summary)["interrupted"].get<bool>());
-  std::ofstream(summary) << "{\"frames\": 1";
-  EXPECT_EQ(compareRoom(options).exit_code, 0);
-  EXPECT_FALSE(readJson(summary)["interrupted"].get<bool>());
   const auto rewritten = fs::last_write_time(states);
   EXPECT_NE(rewritten, written);
   // Another setting gives another run.
@@ -134,8 +131,8 @@ TEST_F(Compare, RecordingsOfOneNameAreKeptApart) {
   const std::string data = quoted(recording_.data);
   const Execution result = compare(data + " " + data, "--methods off --runs 1 --set source.duration_s=0.4");
   ASSERT_EQ(result.exit_code, 0) << result.output;
-  EXPECT_TRUE(fs::exists(runs() / "off_features_1" / "trajectory.tum"));
-  EXPECT_TRUE(fs::exists(runs().string() + "_2/off_features_1/trajectory.tum"));
+  EXPECT_TRUE(fs::exists(run("off") / "trajectory.tum"));
+  EXPECT_TRUE(fs::exists(run("off", "_2") / "trajectory.tum"));
   EXPECT_EQ(readJson(output_ / "compare.json")["recordings"].size(), 2u);
 }
 

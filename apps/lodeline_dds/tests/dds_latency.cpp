@@ -30,19 +30,28 @@ double percentile(std::vector<double> values, double share) {
   return values[static_cast<size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
-/// Publishes at the pace of the recording. Returns when each image of the first camera was published.
-std::map<Time, Clock::time_point> play(const std::string& first_camera, double duration_s,
-                                       TestPlayer* player) {
-  std::map<Time, Clock::time_point> published;
+/// When an image was to be published, and when it was.
+struct Publication {
+  Clock::time_point due, done;
+};
+
+double milliseconds(Clock::duration duration) {
+  return std::chrono::duration<double, std::milli>(duration).count();
+}
+
+/// Publishes at the pace of the recording. Returns the publication of each image of the first camera.
+std::map<Time, Publication> play(const std::string& first_camera, double duration_s, TestPlayer* player) {
+  std::map<Time, Publication> published;
   const Time first = player->messages().front().received;
   const Clock::time_point start = Clock::now();
   for (const TestPlayer::Message& message : player->messages()) {
     const double time_s = (message.received - first).seconds();
     if (time_s > duration_s) break;
-    std::this_thread::sleep_until(
-        start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(time_s)));
+    const Clock::time_point due =
+        start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(time_s));
+    std::this_thread::sleep_until(due);
     player->publish(message);
-    if (message.topic == first_camera) published[message.received] = Clock::now();
+    if (message.topic == first_camera) published[message.received] = {due, Clock::now()};
   }
   return published;
 }
@@ -70,10 +79,15 @@ int measure(const std::string& bag, const std::string& rig, double duration_s) {
     const auto after = published.upper_bound(stampOfCdr(pose.cdr) + Duration::fromSeconds(0.02));
     if (after == published.begin()) continue;
     const auto image = std::prev(after);
-    if ((image->first - published.begin()->first).seconds() < kStart_s) continue;
-    delays_ms.push_back(std::chrono::duration<double, std::milli>(pose.arrival - image->second).count());
+    const double time_s = (image->first - published.begin()->first).seconds();
+    if (time_s < kStart_s) continue;
+    delays_ms.push_back(milliseconds(pose.arrival - image->second.done));
     const auto second = after == published.end() ? after : std::next(after);
-    in_time += second == published.end() || pose.arrival < second->second ? 1 : 0;
+    const bool is_in_time = second == published.end() || pose.arrival < second->second.done;
+    in_time += is_in_time ? 1 : 0;
+    if (is_in_time) continue;
+    fmt::print("late: image of {:.2f} s, pose after {:.1f} ms, next image {:.1f} ms behind its time\n",
+               time_s, delays_ms.back(), milliseconds(after->second.done - after->second.due));
   }
   if (delays_ms.empty()) {
     fmt::print(stderr, "no pose came; dds_latency.log says why\n");

@@ -1,9 +1,11 @@
+#include <fmt/ranges.h>
+
 #include <array>
-#include <cstdio>
-#include <cstdlib>
-#include <utility>
+#include <opencv2/imgcodecs.hpp>
+#include <sstream>
 
 #include "apps/lodeline/tests/test_room.h"
+#include "lodeline/output/survey/formats/test_outside_program.h"
 #include "lodeline/util/files/test_data.h"
 
 // Tests of `lodeline run`, `convert` and `inspect` with bags of ROS 2.
@@ -34,21 +36,42 @@ class Ros2BagTest : public RoomTest {
     return readText(output / "trajectory.tum") + readText(output / "states.csv");
   }
 
-  /// The topics that packages of other authors find in an MCAP file; empty where they are not installed.
-  static std::string foreignList(const std::filesystem::path& file) {
-    const std::filesystem::path web = testSourceDir() / "web";
-    if (!std::filesystem::exists(web / "node_modules/@mcap/core")) return {};
-    const std::string command =
-        fmt::format("node {} list {} 2>&1", quoted(web / "test/ros2_check.mjs"), quoted(file));
-    FILE* pipe = popen(command.c_str(), "r");
-    if (pipe == nullptr) return {};
-    std::string output;
-    std::array<char, 4096> buffer{};
-    while (std::fgets(buffer.data(), static_cast<int>(buffer.size()), pipe) != nullptr)
-      output += buffer.data();
-    return pclose(pipe) == 0 ? output : "failed: " + output;
+  /// A stamp and six readings, with all digits.
+  static std::string imuRow(int64_t time_ns, const std::array<double, 6>& values) {
+    return fmt::format("{} {}", time_ns, fmt::join(values, " "));
   }
+
+  std::vector<std::string> recordedImuRows() const {
+    std::vector<std::string> rows;
+    std::istringstream lines(readText(recording_.csv("imu0")));
+    std::string line;
+    std::getline(lines, line);  // names of the columns
+    while (std::getline(lines, line)) {
+      std::replace(line.begin(), line.end(), ',', ' ');
+      std::istringstream fields(line);
+      int64_t time_ns = 0;
+      std::array<double, 6> values{};
+      fields >> time_ns;
+      for (double& value : values) fields >> value;
+      rows.push_back(imuRow(time_ns, values));
+    }
+    return rows;
+  }
+
+  /// What packages of other authors read in an MCAP file: `what` is `list` or `values`.
+  std::string foreign(const std::string& what, const std::string& name) const {
+    const OutsideRun check =
+        runIn(web_, fmt::format("node test/ros2_check.mjs {} {}", what, quoted(path(name))));
+    EXPECT_EQ(check.exit_code, 0) << check.output;
+    return check.output;
+  }
+
+  const std::filesystem::path web_ = testSourceDir() / "web";
 };
+
+#define LODELINE_NEEDS_MCAP_PACKAGES                              \
+  if (!std::filesystem::exists(web_ / "node_modules/@mcap/core")) \
+  GTEST_SKIP() << "web/node_modules has no @mcap/core (npm ci in web/)"
 
 TEST_F(Ros2BagTest, EveryFormatGivesTheSameTrajectory) {
   const std::string expected = trajectory(recording_.data);
@@ -83,18 +106,53 @@ TEST_F(Ros2BagTest, ConvertsThroughAllFormatsWithoutLoss) {
   }
 }
 
-TEST_F(Ros2BagTest, OtherProgramsReadWhatConvertWrites) {
-  std::string first;
+TEST_F(Ros2BagTest, OtherProgramsReadTheSameInEveryCompression) {
+  LODELINE_NEEDS_MCAP_PACKAGES;
+  convert(recording_.data, "bag.db3");
+  convert(recording_.data, "from_folder.mcap");
+  const std::string expected = foreign("list", "from_folder.mcap");
+  EXPECT_THAT(expected, AllOf(HasSubstr("/cam0/image_raw sensor_msgs/msg/Image 31 "),
+                              HasSubstr("/cam1/image_raw sensor_msgs/msg/Image 31 "),
+                              HasSubstr("/imu0 sensor_msgs/msg/Imu 401 ")));
   for (const char* compression : {"none", "lz4", "zstd"}) {
-    const std::string name = fmt::format("{}.mcap", compression);
-    convert(recording_.data, name, fmt::format("--compression {}", compression));
-    const std::string list = foreignList(path(name));
-    if (list.empty()) GTEST_SKIP() << "web/node_modules has no @mcap/core (npm ci in web/)";
-    EXPECT_THAT(list, AllOf(HasSubstr("/cam0/image_raw sensor_msgs/msg/Image 31 "),
-                            HasSubstr("/imu0 sensor_msgs/msg/Imu 401 ")));
-    if (first.empty()) first = list;
-    EXPECT_EQ(list, first) << compression;
+    for (const auto& from : {recording_.data, path("bag.db3")}) {
+      const std::string name = fmt::format("{}_{}.mcap", from.stem().string(), compression);
+      convert(from, name, fmt::format("--compression {}", compression));
+      EXPECT_EQ(foreign("list", name), expected) << name;
+    }
   }
+}
+
+TEST_F(Ros2BagTest, OtherProgramsReadTheReadingsAndPixelsOfTheRecording) {
+  LODELINE_NEEDS_MCAP_PACKAGES;
+  convert(recording_.data, "bag.db3");
+  convert(path("bag.db3"), "from_bag.mcap");
+  std::vector<std::string> read_rows;
+  size_t images = 0;
+  std::istringstream lines(foreign("values", "from_bag.mcap"));
+  std::string time, topic, type, json;
+  while (lines >> time >> topic >> type && std::getline(lines, json)) {
+    const nlohmann::json message = nlohmann::json::parse(json);
+    const auto& stamp = message["header"]["stamp"];
+    const int64_t time_ns = stamp["sec"].get<int64_t>() * 1'000'000'000 + stamp["nanosec"].get<int64_t>();
+    EXPECT_EQ(std::to_string(time_ns), time);
+    if (topic == "/imu0") {
+      std::array<double, 6> values{};
+      for (size_t i = 0; i < 6; ++i) {
+        const char* vector = i < 3 ? "angular_velocity" : "linear_acceleration";
+        values[i] = message[vector][std::string(1, "xyz"[i % 3])].get<double>();
+      }
+      read_rows.push_back(imuRow(time_ns, values));
+    } else if (topic == "/cam1/image_raw") {
+      const cv::Mat image = cv::imread(recording_.image(1, images++).string(), cv::IMREAD_UNCHANGED);
+      EXPECT_EQ(message["width"], image.cols);
+      EXPECT_EQ(message["height"], image.rows);
+      EXPECT_TRUE(message["data"].get<std::vector<uint8_t>>() ==
+                  std::vector<uint8_t>(image.datastart, image.dataend));
+    }
+  }
+  EXPECT_EQ(images, recording_.image_names.size());
+  EXPECT_EQ(read_rows, recordedImuRows());
 }
 
 TEST_F(Ros2BagTest, ATruncatedMcapIsUsedUpToThere) {
@@ -116,6 +174,24 @@ TEST_F(Ros2BagTest, InspectListsTopicsAndMessages) {
   EXPECT_THAT(messages.output,
               AllOf(HasSubstr("/imu0 sensor_msgs/Imu {header: {stamp: {sec: "),
                     HasSubstr("encoding: \"mono8\", is_bigendian: 0, step: "), HasSubstr(" elements)]}")));
+}
+
+TEST_F(Ros2BagTest, ReadsNoTopicWhoseMetadataStatesAnotherSerialization) {
+  for (const char* format : {"db3", "mcap"}) {
+    const std::filesystem::path bag = path(fmt::format("folder_{}", format));
+    convert(recording_.data, bag.filename().string(), fmt::format("--format {}", format));
+    editLines(bag / "metadata.yaml", [](std::vector<std::string>& lines) {
+      for (std::string& line : lines) {
+        const size_t at = line.find("serialization_format: cdr");
+        if (at != std::string::npos) line = line.substr(0, at) + "serialization_format: other";
+      }
+    });
+    const Execution messages = runProgram(fmt::format("inspect {} --messages 3", quoted(bag)));
+    EXPECT_THAT(messages.output, HasSubstr("serialization format 'other' of its messages is not read"))
+        << format;
+    EXPECT_EQ(messages.output.find("angular_velocity"), std::string::npos) << format;
+    EXPECT_EQ(runProgram(fmt::format("run {} -o {}", quoted(bag), quoted(output_))).exit_code, 1) << format;
+  }
 }
 
 TEST_F(Ros2BagTest, RefusesACompressionThatTheFormatDoesNotHave) {

@@ -101,6 +101,8 @@ TEST_F(Ros2BagRealTest, SplitFilesAreReadInTheOrderOfTime) {
 
 TEST_F(Ros2BagRealTest, SaysWhyMessagesAreNotDecoded) {
   EXPECT_THAT(listing("sqlite3/wrong_rmw_test"),
+              HasSubstr("not decoded: the serialization format 'wrong_format' of its messages is not read"));
+  EXPECT_THAT(listing("sqlite3/wrong_rmw_test/wrong_rmw_test_0.db3"),
               HasSubstr("not decoded: the bag has no definition of test_msgs/Arrays"));
 }
 

@@ -91,6 +91,10 @@ BagParts fromMetadata(const fs::path& folder, Diagnostics* diagnostics) {
   if (information["message_count"].IsDefined()) {
     parts.promised_messages = information["message_count"].as<uint64_t>();
   }
+  for (const YAML::Node& topic : information["topics_with_message_count"]) {
+    const YAML::Node stated = topic["topic_metadata"];
+    parts.formats[stated["name"].as<std::string>()] = stated["serialization_format"].as<std::string>("cdr");
+  }
   return parts;
 }
 
@@ -110,9 +114,10 @@ BagParts findBagParts(const fs::path& bag, Diagnostics* diagnostics) {
                                       (bag / "metadata.yaml").string(), error.what()));
     }
   }
-  if (parts.files.empty())
-    return present.empty() ? throw InputError(bag.string() + ": holds no .db3 or .mcap file")
-                           : BagParts{present, parts.promised_messages};
+  if (parts.files.empty()) {
+    if (present.empty()) throw InputError(bag.string() + ": holds no .db3 or .mcap file");
+    parts.files = present;
+  }
   for (const fs::path& file : present) {
     if (std::find(parts.files.begin(), parts.files.end(), file) != parts.files.end()) continue;
     diagnostics->report(

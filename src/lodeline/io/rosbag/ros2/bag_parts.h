@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "lodeline/diagnostics.h"
@@ -11,8 +13,9 @@ namespace lodeline {
 
 /// The files of a ROS 2 bag.
 struct BagParts {
-  std::vector<std::filesystem::path> files;        ///< in the order of recording
-  std::optional<uint64_t> promised_messages = {};  ///< as metadata.yaml states; nothing without it
+  std::vector<std::filesystem::path> files;         ///< in the order of recording
+  std::optional<uint64_t> promised_messages = {};   ///< as metadata.yaml states; nothing without it
+  std::map<std::string, std::string> formats = {};  ///< serialization of each topic, as metadata.yaml states
 };
 
 /// Finds the files of a bag. `bag`: one file (.db3, .mcap, also with .zstd), or a folder. In a folder,

@@ -33,6 +33,17 @@ std::optional<wire::Bytes> unpackedMessage(wire::Bytes message) {
   return std::move(unpacked.bytes);
 }
 
+/// Refuses the topics whose messages are not in CDR by metadata.yaml, whatever their file says.
+void refuseFormats(const std::map<std::string, std::string>& formats, BagContents* contents) {
+  for (auto& [id, connection] : contents->connections) {
+    const auto stated = formats.find(connection.topic);
+    if (stated == formats.end() || stated->second == "cdr") continue;
+    connection.serialization.reset();
+    connection.problem =
+        fmt::format("the serialization format '{}' of its messages is not read", stated->second);
+  }
+}
+
 size_t messagesIn(const BagContents& contents) {
   size_t messages = 0;
   for (const auto& [topic, entries] : contents.entries) messages += entries.size();
@@ -46,6 +57,7 @@ Ros2Bag::Ros2Bag(const std::filesystem::path& bag, Diagnostics* diagnostics)
   const BagParts parts = findBagParts(bag, diagnostics);
   BagContents contents;
   for (const std::filesystem::path& file : parts.files) addPart(file, &contents);
+  refuseFormats(parts.formats, &contents);
   const size_t messages = messagesIn(contents);
   if (parts.promised_messages && messages < *parts.promised_messages) {
     diagnostics->report(Severity::Warning, "bag_truncated",
