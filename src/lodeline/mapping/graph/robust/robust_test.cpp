@@ -5,6 +5,7 @@
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/mapping/graph/motion/odometry_chain.h"
+#include "lodeline/mapping/graph/motion/odometry_edge.h"
 #include "lodeline/mapping/graph/robust/loop_support.h"
 #include "lodeline/mapping/graph/robust/maximum_clique.h"
 #include "lodeline/mapping/graph/robust/pairwise_consistency.h"
