@@ -88,7 +88,7 @@ TEST_P(FalseEdges, OfTheParkingGarageAreRefusedAndTrueOnesKept) {
       count, GetParam().run, found.false_accepted, found.true_accepted, found.true_loops, difference_m, own_m,
       error);
   EXPECT_EQ(found.false_accepted, 0);
-  EXPECT_GE(found.true_accepted, 0.95 * found.true_loops);
+  EXPECT_GE(found.true_accepted, 0.99 * found.true_loops);
   EXPECT_LE(error, 1.2);
 }
 
@@ -102,7 +102,9 @@ INSTANTIATE_TEST_SUITE_P(Shares, FalseEdges, testing::Values(Case{0.5, 1, 1}, Ca
 // Takes minutes; `make loops` runs them. The limits were set with seed 1.
 INSTANTIATE_TEST_SUITE_P(DISABLED_More, FalseEdges,
                          testing::Values(Case{0.1, 1, 2}, Case{0.3, 1, 2}, Case{0.5, 1, 2}, Case{0.1, 5, 2},
-                                         Case{0.3, 5, 2}, Case{0.5, 5, 2}),
+                                         Case{0.3, 5, 2}, Case{0.5, 5, 2}, Case{0.3, 1, 3}, Case{0.3, 1, 4},
+                                         Case{0.3, 1, 5}, Case{0.5, 1, 3}, Case{0.5, 1, 4}, Case{0.5, 1, 5},
+                                         Case{0.3, 5, 3}),
                          nameOf);
 
 }  // namespace

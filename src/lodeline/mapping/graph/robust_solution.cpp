@@ -20,10 +20,9 @@ constexpr int kMostRounds = 40;
 constexpr int kMostFinalRounds = 10;
 /// Least support in a batch, relative to its largest.
 constexpr double kSupportOfBatch = 0.75;
-/// Agreement among refused loops that counts as what false loops reach: all but one in a hundred.
-constexpr double kAgreementQuantile = 0.99;
-/// Share of refused loops that would pass a gate, above which passing it is no evidence.
-constexpr double kMostShare = 1e-3;
+/// Probability that a false loop has so many neighbours and passes so wide a gate, above which both are no
+/// evidence.
+constexpr double kMostByAccident = 1e-3;
 /// Rounds in which refused loops are tried again.
 constexpr int kMostTrials = 5;
 
@@ -95,7 +94,7 @@ bool RobustSolution::extend() {
   std::erase_if(untried, [](const ReportedFactor* loop) { return loop->is_doubtful; });
   admit(untried);
   settle();
-  const Factors weak = weaklySupported();
+  const Factors weak = weaklySupported(accidentalAgreement());
   return std::all_of(needed.begin(), needed.end(),
                      [](const ReportedFactor* factor) { return factor->isUsed(); }) &&
          std::none_of(weak.begin(), weak.end(), [](const ReportedFactor* loop) { return loop->is_new; });
@@ -115,6 +114,7 @@ void RobustSolution::rebuild() {
   }
   if (has_control) settle();
   tryRefused();
+  reconsiderSupported();
   takeOutDoubtful();
 }
 
@@ -144,20 +144,45 @@ void RobustSolution::tryRefused() {
   }
 }
 
-RobustSolution::Factors RobustSolution::weaklySupported() const {
-  std::vector<std::ptrdiff_t> among_refused;
-  for (const ReportedFactor* loop : refusedLoops()) among_refused.push_back(agreeing(*loop, false));
-  std::sort(among_refused.begin(), among_refused.end());
-  const auto place = static_cast<size_t>(kAgreementQuantile * static_cast<double>(among_refused.size()));
-  const std::ptrdiff_t least = among_refused.empty() ? 0 : 1 + among_refused[place];
+double RobustSolution::truncatedCost() const {
+  double cost = 2.0 * summary_->cost;
+  for (const ReportedFactor* factor : robust(false)) cost += limitOf(*factor);
+  return cost;
+}
+
+void RobustSolution::reconsiderSupported() {
+  const AccidentalAgreement accidental = accidentalAgreement();
+  Factors supported = refusedLoops();
+  std::erase_if(supported,
+                [&](const ReportedFactor* loop) { return accidental.share(agreeing(*loop, true)) > 0.0; });
+  if (supported.empty()) return;
+  const Factors used = robust(true);
+  const double cost = truncatedCost();
+  for (ReportedFactor* loop : supported) problem_->setWeight(loop, 1.0);
+  settle();
+  if (truncatedCost() < cost) return tryRefused();
+  for (ReportedFactor* factor : robust(true)) problem_->setWeight(factor, 0.0);
+  for (ReportedFactor* factor : used) problem_->setWeight(factor, 1.0);
+  leastSquares(options_.most_iterations);
+}
+
+AccidentalAgreement RobustSolution::accidentalAgreement() const {
+  std::vector<std::ptrdiff_t> counts;
+  for (const ReportedFactor* loop : refusedLoops()) counts.push_back(agreeing(*loop, false));
+  return AccidentalAgreement(std::move(counts));
+}
+
+RobustSolution::Factors RobustSolution::weaklySupported(const AccidentalAgreement& accidental) const {
   Factors weak = robust(true);
-  std::erase_if(
-      weak, [&](const ReportedFactor* loop) { return !loop->isLoop() || agreeing(*loop, true) >= least; });
+  std::erase_if(weak, [&](const ReportedFactor* loop) {
+    return !loop->isLoop() || accidental.share(agreeing(*loop, true)) == 0.0;
+  });
   return weak;
 }
 
 void RobustSolution::takeOutDoubtful() {
-  const Factors weak = weaklySupported();
+  const AccidentalAgreement accidental = accidentalAgreement();
+  const Factors weak = weaklySupported(accidental);
   if (weak.empty()) return;
   for (ReportedFactor* loop : weak) {
     problem_->setWeight(loop, 0.0);
@@ -165,12 +190,12 @@ void RobustSolution::takeOutDoubtful() {
   }
   leastSquares(options_.most_iterations);
   for (int trial = 0; trial < kMostTrials; ++trial) {
-    if (!admitCertain()) return;
+    if (!admitCertain(accidental)) return;
     settle();
   }
 }
 
-bool RobustSolution::admitCertain() {
+bool RobustSolution::admitCertain(const AccidentalAgreement& accidental) {
   LoopGate gate(problem_, chiSquaredQuantile(options_.inlier_probability, 6));
   const Factors refused = refusedLoops(), passed = gate.passed(refused);
   const std::set<const ReportedFactor*> inside(passed.begin(), passed.end());
@@ -180,7 +205,8 @@ bool RobustSolution::admitCertain() {
   }
   Factors certain;
   for (ReportedFactor* loop : passed) {
-    loop->is_doubtful = gate.shareThatPasses(*loop, residuals) > kMostShare;
+    const double by_accident = accidental.share(agreeing(*loop, true));
+    loop->is_doubtful = by_accident * gate.shareThatPasses(*loop, residuals) > kMostByAccident;
     if (!loop->is_doubtful) certain.push_back(loop);
   }
   for (ReportedFactor* loop : certain) problem_->setWeight(loop, 1.0);
@@ -222,13 +248,14 @@ bool RobustSolution::truncate(const Factors& factors) {
   return is_changed;
 }
 
+double RobustSolution::limitOf(const ReportedFactor& factor) const {
+  return chiSquaredQuantile(options_.inlier_probability, factor.degrees_of_freedom);
+}
+
 std::vector<double> RobustSolution::ratiosOf(const Factors& factors) const {
-  const double limit_3 = chiSquaredQuantile(options_.inlier_probability, 3);
-  const double limit_6 = chiSquaredQuantile(options_.inlier_probability, 6);
   std::vector<double> ratios;
-  for (const ReportedFactor* factor : factors) {
-    ratios.push_back(problem_->chiSquared(*factor) / (factor->degrees_of_freedom == 3 ? limit_3 : limit_6));
-  }
+  for (const ReportedFactor* factor : factors)
+    ratios.push_back(problem_->chiSquared(*factor) / limitOf(*factor));
   return ratios;
 }
 

@@ -4,6 +4,7 @@
 
 #include "lodeline/mapping/graph/graph_problem.h"
 #include "lodeline/mapping/graph/pose_graph.h"
+#include "lodeline/mapping/graph/robust/loop_support.h"
 
 namespace lodeline {
 
@@ -33,12 +34,20 @@ class RobustSolution {
   void takeInBatches();
   /// Tries refused loops again until none passes.
   void tryRefused();
+  /// Uses refused loops with which more used ones agree than refused ones agree with each other, if this
+  /// lowers the truncated cost: one false loop may have taken the place of several true ones.
+  void reconsiderSupported();
+  /// Sum of chi^2 of what is used, and of the limits of what is refused.
+  double truncatedCost() const;
+  double limitOf(const ReportedFactor& factor) const;
   /// Used loops with no more agreement than refused ones have among each other; none where none is refused.
-  Factors weaklySupported() const;
+  Factors weaklySupported(const AccidentalAgreement& accidental) const;
+  /// Agreement of refused loops with each other.
+  AccidentalAgreement accidentalAgreement() const;
   /// Takes out weakly supported loops whose gate is so wide that false ones pass it.
   void takeOutDoubtful();
   /// Takes refused loops that pass a gate which false ones do not. Whether there are any.
-  bool admitCertain();
+  bool admitCertain(const AccidentalAgreement& accidental);
   /// Sets the weight of the loops that pass the gate to 1. Their number.
   int admit(const Factors& candidates);
   /// Solves with all used factors and takes out those that contradict.

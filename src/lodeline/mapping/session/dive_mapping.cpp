@@ -19,29 +19,6 @@ constexpr int kKeyframesPerCommit = 25;
 // Length of a clip with which a place is looked for without a prediction.
 constexpr double kClip_s = 3.0;
 
-/// Mean viewing direction of a keyframe's features, unit.
-Vec3 viewOf(const MapKeyframe& keyframe) {
-  Vec3 sum = Vec3::Zero();
-  for (const MapFeature& feature : keyframe.features) {
-    if (!feature.rays.empty()) sum += feature.rays.front().bearing_B;
-  }
-  return sum.norm() > 1e-9 ? Vec3(sum.normalized()) : Vec3::UnitX();
-}
-
-KnownKeyframe knownOf(const MapKeyframe& keyframe, const Rigid3& map_from_body, double path_m) {
-  KnownKeyframe known;
-  known.id = keyframe.id;
-  known.dive = keyframe.dive;
-  known.time = keyframe.time;
-  known.odom_from_body = keyframe.odom_from_body;
-  known.map_from_body = map_from_body;
-  known.view_B = viewOf(keyframe);
-  known.path_m = path_m;
-  if (keyframe.depth_m) known.depth_m = keyframe.depth_m->value;
-  known.field = keyframe.field;
-  return known;
-}
-
 DivePlacement placementOf(const DiveStart& start, const MapKeyframe& first, double north_sigma_rad) {
   DivePlacement placement;
   placement.is_known = first.heading_sigma_rad.has_value() && north_sigma_rad < 1.0;
@@ -167,6 +144,7 @@ void DiveMapping::store(MapKeyframe* keyframe) {
 }
 
 void DiveMapping::look(const MapKeyframe& keyframe, MappingStep* step) {
+  decidePending(false, step);
   for (const LoopCandidateKeyframe& candidate : search_.find(keyframe, known_, index_)) {
     const MapKeyframe old_keyframe = full(candidate.id);
     Loop loop = verifier_.verify(old_keyframe, keyframe, candidate.prediction);
@@ -175,15 +153,38 @@ void DiveMapping::look(const MapKeyframe& keyframe, MappingStep* step) {
     if (by_clip) loop = verifier_.verify(old_keyframe, mergeKeyframes({recent_.begin(), recent_.end()}));
     loop.old_keyframe = candidate.id;
     loop.new_keyframe = keyframe.id;
-    loop.source = candidate.source;
+    loop.source = candidate.source();
     ++summary_.candidates;
     if (!isVerified(&loop)) continue;
     VerifiedLoop verified{loop, {}};
     if (!by_clip) verified.links = linksOf(loop, old_keyframe, keyframe);
     verified.loop.inlier_matches.clear();
-    use(acceptance_.add(std::move(verified), candidate.prediction.has_value(), known_), step);
+    const bool has_prediction = candidate.prediction && !candidate.is_wide;
+    pending_.push_back(
+        {std::move(verified), {has_prediction, !has_prediction && isFieldTelling(known_, loop)}});
+    decidePending(false, step);
   }
   use(acceptance_.expire(keyframe.id, known_), step);
+}
+
+void DiveMapping::decidePending(bool is_end, MappingStep* step) {
+  std::vector<PendingLoop> pending;
+  std::swap(pending, pending_);
+  for (PendingLoop& waiting : pending) {
+    Loop& loop = waiting.verified.loop;
+    const double since_m = path_m_ - known_.at(loop.new_keyframe).path_m;
+    if (!is_end && waiting.evidence.needs_field && since_m < FieldSupportOptions{}.reach_m) {
+      pending_.push_back(std::move(waiting));
+      continue;
+    }
+    if (loop.new_keyframe != previous_->id) judgeByField(known_, &loop);
+    if (loop.status == LoopStatus::Refused) {
+      ++summary_.refused;
+      record(loop);
+    } else {
+      use(acceptance_.add(std::move(waiting.verified), waiting.evidence, known_), step);
+    }
+  }
 }
 
 bool DiveMapping::isVerified(Loop* loop) {
@@ -358,7 +359,7 @@ void DiveMapping::registerClouds() {
   for (Loop& loop : cloudLoops(keyframes, features, view_B.normalized())) {
     ++summary_.candidates;
     if (!isVerified(&loop)) continue;
-    use(acceptance.add({loop, {}}, true, known_), &step);
+    use(acceptance.add({loop, {}}, {.has_prediction = true}, known_), &step);
   }
   use(acceptance.expire(previous_->id, known_, true), &step);
 }
@@ -367,6 +368,7 @@ MappingSummary DiveMapping::finish(Time end) {
   const double start_s = threadSeconds();
   MappingStep last;
   if (previous_) {
+    decidePending(true, &last);
     use(acceptance_.expire(previous_->id, known_, true), &last);
     registerClouds();
     use(tags_.finish(known_, &graph_, joining()));

@@ -63,12 +63,20 @@ class DiveMapping {
   int dive() const { return dive_number_; }
 
  private:
+  /// A verified loop that is not yet offered for acceptance.
+  struct PendingLoop {
+    VerifiedLoop verified;
+    LoopEvidence evidence;
+  };
+
   void loadEarlier();
   /// Places the dive in the earlier map by its first keyframe, if its start is stated.
   void place(const MapKeyframe& first);
   MapKeyframe full(KeyframeId id) const;
   void store(MapKeyframe* keyframe);
   void look(const MapKeyframe& keyframe, MappingStep* step);
+  /// Offers pending loops for acceptance, except those that wait for the magnetic field of their new way.
+  void decidePending(bool is_end, MappingStep* step);
   void use(std::vector<VerifiedLoop> decided, MappingStep* step);
   /// Counts what became of tags. Their ties wait for the next solution.
   void use(const TagStep& tags);
@@ -94,6 +102,7 @@ class DiveMapping {
   CandidateSearch search_;
   DescriptorIndex index_;
   KnownKeyframes known_;
+  std::vector<PendingLoop> pending_;
   LoopAcceptance acceptance_;
   PoseGraph graph_;
   DiveTags tags_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <numeric>
+#include <utility>
 
 namespace lodeline {
 namespace {
@@ -43,6 +44,17 @@ Loop directed(const Loop& loop, const OdometryChains& chains) {
 }
 
 }  // namespace
+
+AccidentalAgreement::AccidentalAgreement(std::vector<std::ptrdiff_t> counts_of_refused)
+    : counts_(std::move(counts_of_refused)) {
+  std::sort(counts_.begin(), counts_.end());
+}
+
+double AccidentalAgreement::share(std::ptrdiff_t count) const {
+  if (counts_.empty()) return 0.0;
+  const auto first = std::lower_bound(counts_.begin(), counts_.end(), count);
+  return static_cast<double>(counts_.end() - first) / static_cast<double>(counts_.size());
+}
 
 std::vector<LoopPair> neighbouringLoops(const std::vector<Loop>& loops, size_t first_new,
                                         const OdometryChains& chains, const OdometryBetween& between_singles,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "lodeline/mapping/graph/motion/odometry_chains.h"
@@ -20,5 +21,17 @@ struct LoopPair {
 std::vector<LoopPair> neighbouringLoops(const std::vector<Loop>& loops, size_t first_new,
                                         const OdometryChains& chains, const OdometryBetween& between_singles,
                                         double limit);
+
+/// With how many neighbours a false loop agrees by accident, by the counts of refused loops.
+class AccidentalAgreement {
+ public:
+  explicit AccidentalAgreement(std::vector<std::ptrdiff_t> counts_of_refused);
+
+  /// Share of refused loops with which at least `count` others agree; 0 where none is refused.
+  double share(std::ptrdiff_t count) const;
+
+ private:
+  std::vector<std::ptrdiff_t> counts_;  ///< ascending
+};
 
 }  // namespace lodeline

@@ -5,6 +5,8 @@
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/mapping/graph/motion/odometry_chain.h"
+#include "lodeline/mapping/graph/motion/odometry_edge.h"
+#include "lodeline/mapping/graph/robust/loop_support.h"
 #include "lodeline/mapping/graph/robust/maximum_clique.h"
 #include "lodeline/mapping/graph/robust/pairwise_consistency.h"
 #include "lodeline/mapping/graph/robust/robust_weights.h"
@@ -17,6 +19,15 @@ TEST(ChiSquaredQuantile, AgreesWithTables) {
   EXPECT_NEAR(chiSquaredQuantile(0.95, 6), 12.5916, 1e-4);
   EXPECT_NEAR(chiSquaredQuantile(0.99, 3), 11.3449, 1e-4);
   EXPECT_THROW(chiSquaredQuantile(1.0, 6), UsageError);
+}
+
+TEST(AccidentalAgreement, IsTheShareOfRefusedLoopsThatReachACount) {
+  const AccidentalAgreement accidental({0, 2, 0, 1});
+  EXPECT_EQ(accidental.share(0), 1.0);
+  EXPECT_EQ(accidental.share(1), 0.5);
+  EXPECT_EQ(accidental.share(2), 0.25);
+  EXPECT_EQ(accidental.share(3), 0.0);
+  EXPECT_EQ(AccidentalAgreement(std::vector<std::ptrdiff_t>()).share(0), 0.0);
 }
 
 TEST(GraduatedWeights, EndAtTheTruncatedCost) {

@@ -65,13 +65,11 @@ std::vector<LoopCandidateKeyframe> CandidateSearch::find(const MapKeyframe& newe
       continue;
     const double apart_m = (now.map_from_body.translation - old_keyframe.map_from_body.translation).norm();
     if (same_dive && apart_m > options_.view_distance_m + drift_m) continue;
-    LoopCandidateKeyframe candidate{old_keyframe.id, known.predict(old_keyframe.id, now.id), "geometry"};
+    LoopCandidateKeyframe candidate{old_keyframe.id, known.predict(old_keyframe.id, now.id)};
     if (candidate.prediction) {
       if (!isPossible(old_keyframe, now, *candidate.prediction)) continue;
       const double sigma_m = std::sqrt(candidate.prediction->covariance.topLeftCorner<3, 3>().trace());
-      if (kSigmas * sigma_m > kWide_m) candidate.source = "appearance";
-    } else {
-      candidate.source = "appearance";
+      candidate.is_wide = kSigmas * sigma_m > kWide_m;
     }
     possible.emplace(candidate.id, candidate);
   }

@@ -24,7 +24,8 @@ struct CandidateSearchOptions {
 struct LoopCandidateKeyframe {
   KeyframeId id = -1;
   std::optional<LoopPrediction> prediction;  ///< of the newest body in its body
-  const char* source = "geometry";
+  bool is_wide = false;                      ///< whether the prediction leaves the choice to appearance
+  const char* source() const { return prediction && !is_wide ? "geometry" : "appearance"; }
 };
 
 /// Chooses the keyframes that may show the same place as the newest one. The prediction must allow it within

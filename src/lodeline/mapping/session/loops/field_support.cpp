@@ -72,7 +72,8 @@ double squaredVariation(const PlacedFields& readings) {
 /// Whether the field varies along the ways by more than the noise, each way for itself.
 bool varies(const PlacedFields& old_way, const PlacedFields& new_way, const FieldSupportOptions& options) {
   constexpr double kNoises = 3.0;
-  const double freedom = 3.0 * (static_cast<double>(old_way.size() + new_way.size()) - 2.0);
+  const double ways = new_way.empty() ? 1.0 : 2.0;
+  const double freedom = 3.0 * (static_cast<double>(old_way.size() + new_way.size()) - ways);
   double noise_T = 0.0;
   for (const PlacedFields* way : {&old_way, &new_way}) {
     for (const PlacedField& placed : *way) noise_T = std::max(noise_T, placed.reading.sigma_T);
@@ -218,6 +219,21 @@ std::optional<FieldAgreement> fieldSupport(const KnownKeyframes& known, const Lo
   agreement.log_ratio =
       0.5 * (other.chi_squared + other.log_determinant) - 0.5 * (same.chi_squared + same.log_determinant);
   return agreement;
+}
+
+bool isFieldTelling(const KnownKeyframes& known, const Loop& loop, const FieldSupportOptions& options) {
+  if (!known.at(loop.new_keyframe).field) return false;
+  const PlacedFields old_way = readingsAround(known, loop.old_keyframe, -options.reach_m, options.reach_m);
+  return static_cast<int>(old_way.size()) >= options.least_readings && varies(old_way, {}, options);
+}
+
+bool areSupportedByField(const std::vector<Loop>& loops, const FieldSupportOptions& options) {
+  int supported = 0, other = 0;
+  for (const Loop& loop : loops) {
+    if (!loop.field || loop.field->values < options.supporting_values) continue;
+    ++(loop.field->log_ratio > options.supporting_log_ratio ? supported : other);
+  }
+  return supported > other;
 }
 
 void judgeByField(const KnownKeyframes& known, Loop* loop, const FieldSupportOptions& options) {

@@ -19,7 +19,30 @@ Mat6 placementCovariance(const DivePlacement& placement, const KnownKeyframe& ke
   return covariance;
 }
 
+/// Mean viewing direction of a keyframe's features, unit.
+Vec3 viewOf(const MapKeyframe& keyframe) {
+  Vec3 sum = Vec3::Zero();
+  for (const MapFeature& feature : keyframe.features) {
+    if (!feature.rays.empty()) sum += feature.rays.front().bearing_B;
+  }
+  return sum.norm() > 1e-9 ? Vec3(sum.normalized()) : Vec3::UnitX();
+}
+
 }  // namespace
+
+KnownKeyframe knownOf(const MapKeyframe& keyframe, const Rigid3& map_from_body, double path_m) {
+  KnownKeyframe known;
+  known.id = keyframe.id;
+  known.dive = keyframe.dive;
+  known.time = keyframe.time;
+  known.odom_from_body = keyframe.odom_from_body;
+  known.map_from_body = map_from_body;
+  known.view_B = viewOf(keyframe);
+  known.path_m = path_m;
+  if (keyframe.depth_m) known.depth_m = keyframe.depth_m->value;
+  known.field = keyframe.field;
+  return known;
+}
 
 void KnownKeyframes::startDive(int dive, const DivePlacement& placement) {
   placements_[dive] = placement;

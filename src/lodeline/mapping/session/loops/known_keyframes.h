@@ -23,6 +23,9 @@ struct KnownKeyframe {
   std::optional<KeyframeField> field;
 };
 
+/// `path_m`: along the dive, from its first keyframe.
+KnownKeyframe knownOf(const MapKeyframe& keyframe, const Rigid3& map_from_body, double path_m);
+
 /// Uncertain position of one dive's odometry world in the map: rotation about the vertical, and translation.
 struct DivePlacement {
   Rigid3 map_from_odom;

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include "lodeline/mapping/session/loops/field_support.h"
 
 namespace lodeline {
 namespace {
@@ -17,10 +20,11 @@ constexpr size_t kMostAccepted = 10;
 
 }  // namespace
 
-std::vector<VerifiedLoop> LoopAcceptance::add(VerifiedLoop verified, bool has_prediction,
+std::vector<VerifiedLoop> LoopAcceptance::add(VerifiedLoop verified, const LoopEvidence& evidence,
                                               const KnownKeyframes& known) {
+  const double path_m = known.at(verified.loop.new_keyframe).path_m;
   const int old_dive = known.at(verified.loop.old_keyframe).dive;
-  waiting_.push_back({std::move(verified), has_prediction});
+  waiting_.push_back({std::move(verified), evidence});
   const std::vector<Loop>& accepted = accepted_[old_dive];
   std::vector<Loop> loops(
       accepted.end() - static_cast<std::ptrdiff_t>(std::min(kMostAccepted, accepted.size())), accepted.end());
@@ -37,13 +41,20 @@ std::vector<VerifiedLoop> LoopAcceptance::add(VerifiedLoop verified, bool has_pr
                                                       [&](size_t i) { return i < known_good; }));
   // Loops that only agree with each other, and not with most of those in use, have to wait.
   if (2 * good < known_good) return {};
+  std::vector<Loop> nearby;
+  for (const size_t i : agreeing.indices) {
+    if (std::abs(known.at(loops[i].new_keyframe).path_m - path_m) < kWaitingPath_m)
+      nearby.push_back(loops[i]);
+  }
+  const bool has_field = areSupportedByField(nearby);
   std::vector<VerifiedLoop> decided;
   std::vector<size_t> used;
   for (const size_t i : agreeing.indices) {
     if (i < known_good) continue;
     Waiting& candidate = waiting_[waiting[i - known_good]];
-    const size_t needed = candidate.has_prediction || known_good > 0 ? kNeededWithPrediction : kNeededWithout;
-    if (agreeing.indices.size() < needed) continue;
+    const bool is_predicted = candidate.evidence.has_prediction || known_good > 0;
+    const size_t needed = is_predicted ? kNeededWithPrediction : kNeededWithout;
+    if (agreeing.indices.size() < needed || (candidate.evidence.needs_field && !has_field)) continue;
     candidate.verified.loop.status = LoopStatus::Accepted;
     candidate.verified.loop.reason.clear();
     accepted_[old_dive].push_back(candidate.verified.loop);
@@ -67,8 +78,9 @@ std::vector<VerifiedLoop> LoopAcceptance::expire(KeyframeId newest, const KnownK
       continue;
     }
     candidate.verified.loop.status = LoopStatus::Refused;
-    candidate.verified.loop.reason =
-        fmt::format("no other loop within {:.0f} m agrees with it", kWaitingPath_m);
+    candidate.verified.loop.reason = fmt::format(
+        "no other loop {}within {:.0f} m agrees with it",
+        candidate.evidence.needs_field ? "at a place that the magnetic field supports " : "", kWaitingPath_m);
     refused.push_back(std::move(candidate.verified));
   }
   waiting_ = std::move(still);

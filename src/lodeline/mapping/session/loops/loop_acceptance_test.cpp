@@ -42,22 +42,46 @@ class LoopAcceptanceTest : public testing::Test {
 };
 
 TEST_F(LoopAcceptanceTest, NeedsASecondLoopThatAgrees) {
-  EXPECT_TRUE(acceptance_.add(loop(3), true, known_).empty());
-  const std::vector<VerifiedLoop> accepted = acceptance_.add(loop(5), true, known_);
+  EXPECT_TRUE(acceptance_.add(loop(3), {.has_prediction = true}, known_).empty());
+  const std::vector<VerifiedLoop> accepted = acceptance_.add(loop(5), {.has_prediction = true}, known_);
   ASSERT_EQ(accepted.size(), 2u);
   for (const VerifiedLoop& verified : accepted) EXPECT_EQ(verified.loop.status, LoopStatus::Accepted);
 }
 
 TEST_F(LoopAcceptanceTest, NeedsThreeWithoutAPrediction) {
-  EXPECT_TRUE(acceptance_.add(loop(3), false, known_).empty());
-  EXPECT_TRUE(acceptance_.add(loop(5), false, known_).empty());
-  EXPECT_EQ(acceptance_.add(loop(7), false, known_).size(), 3u);
+  EXPECT_TRUE(acceptance_.add(loop(3), {}, known_).empty());
+  EXPECT_TRUE(acceptance_.add(loop(5), {}, known_).empty());
+  EXPECT_EQ(acceptance_.add(loop(7), {}, known_).size(), 3u);
+}
+
+// Where the field tells places apart, loops that agree wait until it supports most of them.
+TEST_F(LoopAcceptanceTest, NeedsTheFieldWhereItTells) {
+  const LoopEvidence evidence{.needs_field = true};
+  const auto with = [&](int place, int values, double log_ratio) {
+    VerifiedLoop verified = loop(place);
+    verified.loop.field = FieldAgreement{.chi_squared = 30.0, .values = values, .log_ratio = log_ratio};
+    return verified;
+  };
+  EXPECT_TRUE(acceptance_.add(with(3, 30, -3.0), evidence, known_).empty());
+  EXPECT_TRUE(acceptance_.add(loop(5), evidence, known_).empty());
+  EXPECT_TRUE(acceptance_.add(with(7, 9, 8.0), evidence, known_).empty()) << "few readings";
+  EXPECT_TRUE(acceptance_.add(with(9, 30, 8.0), evidence, known_).empty()) << "one of two";
+  EXPECT_EQ(acceptance_.add(with(11, 30, 8.0), evidence, known_).size(), 5u);
+  EXPECT_EQ(acceptance_.add(loop(13), evidence, known_).size(), 1u);
+}
+
+TEST_F(LoopAcceptanceTest, RefusesWhatTheFieldDoesNotSupport) {
+  const LoopEvidence evidence{.needs_field = true};
+  for (const int place : {3, 5, 7, 9}) acceptance_.add(loop(place), evidence, known_);
+  const std::vector<VerifiedLoop> refused = acceptance_.expire(139, known_);
+  ASSERT_EQ(refused.size(), 4u);
+  EXPECT_NE(refused.front().loop.reason.find("magnetic field"), std::string::npos);
 }
 
 TEST_F(LoopAcceptanceTest, LetsAFalseLoopWaitAndRefusesItInTheEnd) {
-  acceptance_.add(loop(3), true, known_);
-  acceptance_.add(loop(5), true, known_);
-  EXPECT_TRUE(acceptance_.add(loop(7, 2.0), true, known_).empty());
+  acceptance_.add(loop(3), {.has_prediction = true}, known_);
+  acceptance_.add(loop(5), {.has_prediction = true}, known_);
+  EXPECT_TRUE(acceptance_.add(loop(7, 2.0), {.has_prediction = true}, known_).empty());
   EXPECT_TRUE(acceptance_.expire(108, known_).empty());
   const std::vector<VerifiedLoop> refused = acceptance_.expire(139, known_);
   ASSERT_EQ(refused.size(), 1u);
@@ -66,9 +90,9 @@ TEST_F(LoopAcceptanceTest, LetsAFalseLoopWaitAndRefusesItInTheEnd) {
 }
 
 TEST_F(LoopAcceptanceTest, DoesNotLetFalseLoopsThatAgreeOutvoteThoseInUse) {
-  for (int place = 3; place < 11; place += 2) acceptance_.add(loop(place), true, known_);
-  EXPECT_TRUE(acceptance_.add(loop(12, 2.0), true, known_).empty());
-  EXPECT_TRUE(acceptance_.add(loop(13, 2.0), true, known_).empty());
+  for (int place = 3; place < 11; place += 2) acceptance_.add(loop(place), {.has_prediction = true}, known_);
+  EXPECT_TRUE(acceptance_.add(loop(12, 2.0), {.has_prediction = true}, known_).empty());
+  EXPECT_TRUE(acceptance_.add(loop(13, 2.0), {.has_prediction = true}, known_).empty());
 }
 
 TEST_F(LoopAcceptanceTest, PredictsThroughAnAcceptedLoop) {
