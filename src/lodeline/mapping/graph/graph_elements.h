@@ -73,7 +73,7 @@ struct GraphLandmark {
 };
 
 /// A landmark seen from a node.
-struct Sighting {
+struct LandmarkObservation {
   std::string landmark;
   KeyframeId node = -1;
   Vec3 point_B = Vec3::Zero();         ///< measured in the body, m
@@ -86,16 +86,16 @@ using RobustIndex = int;
 
 /// What became of a factor that could be refused, or of a control point.
 struct FactorReport {
-  enum class Kind { Loop, Position, Sighting } kind = Kind::Loop;
+  enum class Kind { Loop, Position, LandmarkObservation } kind = Kind::Loop;
   std::string name;        ///< of the control point or the landmark; empty for loops
-  KeyframeId from = -1;    ///< the node of a position or sighting
+  KeyframeId from = -1;    ///< the node of a position or observation
   KeyframeId to = -1;      ///< of loops
   bool is_robust = true;   ///< false: it could not be refused
   double weight = 1.0;     ///< 1 used, 0 not used
   double chi_squared = 0;  ///< of its residual at the solution, whether it was used or not
   int degrees_of_freedom = 6;
   /// Residual at the solution without whitening: [dp, dtheta] in axes of `from` for loops, m in world axes
-  /// for positions, m in body axes for sightings.
+  /// for positions, m in body axes for observations.
   Eigen::VectorXd residual;
   bool accepted = true;
   std::string reason;  ///< why it was refused, in words
@@ -106,7 +106,7 @@ struct GraphSummary {
   int rounds = 0;                     ///< least-squares problems solved
   int iterations = 0;                 ///< steps of all of these
   double cost = 0.0;                  ///< half the sum of chi^2 of everything that was used
-  std::vector<FactorReport> factors;  ///< loops, positions and sightings in the order of addition
+  std::vector<FactorReport> factors;  ///< loops, positions and observations in the order of addition
 
   int acceptedLoops() const;
   int refusedLoops() const;

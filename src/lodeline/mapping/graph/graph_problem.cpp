@@ -8,9 +8,9 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/mapping/graph/factors/heading_factor.h"
 #include "lodeline/mapping/graph/factors/height_factor.h"
+#include "lodeline/mapping/graph/factors/landmark_observation_factor.h"
 #include "lodeline/mapping/graph/factors/position_factor.h"
 #include "lodeline/mapping/graph/factors/relative_pose_factor.h"
-#include "lodeline/mapping/graph/factors/sighting_factor.h"
 #include "lodeline/mapping/graph/factors/tilt_factor.h"
 #include "lodeline/mapping/graph/graph_gauge.h"
 #include "lodeline/mapping/graph/motion/level_motion.h"
@@ -132,33 +132,34 @@ void GraphProblem::add(const GraphLandmark& landmark) {
   addCertain(std::make_unique<PriorFactor>(state.prior), {state.position_W.data()});
 }
 
-void GraphProblem::add(const Sighting& sighting) {
-  const std::string what = fmt::format("sighting of '{}'", sighting.landmark);
-  Node& from = node(sighting.node, what.c_str());
-  const auto found = landmarks_.find(sighting.landmark);
+void GraphProblem::add(const LandmarkObservation& observation) {
+  const std::string what = fmt::format("observation of '{}'", observation.landmark);
+  Node& from = node(observation.node, what.c_str());
+  const auto found = landmarks_.find(observation.landmark);
   if (found == landmarks_.end()) throw InputError(what + ": no such landmark is in the graph");
   LandmarkState& seen = found->second;
-  auto factor = std::make_unique<SightingFactor>(sighting.point_B, sighting.covariance);
-  if (seen.sightings++ == 0) {
+  auto factor = std::make_unique<LandmarkObservationFactor>(observation.point_B, observation.covariance);
+  if (seen.observations++ == 0) {
     if (seen.is_measured) {
       addMeasuredPosition(seen.position_W);
     } else {
-      seen.position_W = poseFromBlock(from.pose.data()) * sighting.point_B;
+      seen.position_W = poseFromBlock(from.pose.data()) * observation.point_B;
       seen.prior.blocks[0].linearization_point = seen.position_W;
     }
   }
-  if (!sighting.robust) {
-    if (seen.part >= 0) join(seen.part, sighting.node);
-    seen.part = sighting.node;
+  if (!observation.robust) {
+    if (seen.part >= 0) join(seen.part, observation.node);
+    seen.part = observation.node;
   }
-  ReportedFactor& reported = report(FactorReport::Kind::Sighting, sighting.robust, sighting.node, 3);
-  reported.name = sighting.landmark;
-  reported.residual = [measured = sighting.point_B, &from, &seen]() -> Eigen::VectorXd {
+  ReportedFactor& reported =
+      report(FactorReport::Kind::LandmarkObservation, observation.robust, observation.node, 3);
+  reported.name = observation.landmark;
+  reported.residual = [measured = observation.point_B, &from, &seen]() -> Eigen::VectorXd {
     return poseFromBlock(from.pose.data()).inverse() * seen.position_W - measured;
   };
   reported.function = std::move(factor);
   reported.parameters = {from.pose.data(), seen.position_W.data()};
-  if (!sighting.robust) setWeight(&reported, 1.0);
+  if (!observation.robust) setWeight(&reported, 1.0);
 }
 
 void GraphProblem::add(const AzimuthPrior& prior) {

@@ -67,7 +67,7 @@ class GraphProblem {
   void add(const HeightMeasurement& measurement);
   void add(const PositionMeasurement& measurement);
   void add(const GraphLandmark& landmark);
-  void add(const Sighting& sighting);
+  void add(const LandmarkObservation& observation);
   void add(const AzimuthPrior& prior);
   void add(const HeightOffsetPrior& prior);
 
@@ -112,7 +112,7 @@ class GraphProblem {
     Vec3 position_W = Vec3::Zero();
     Prior prior;
     bool is_measured = false;
-    int sightings = 0;
+    int observations = 0;
     KeyframeId part = -1;  ///< a node that sees it for certain
   };
 

@@ -58,7 +58,7 @@ void PoseGraph::add(const HeadingMeasurement& measurement) { problem_->add(measu
 void PoseGraph::add(const HeightMeasurement& measurement) { problem_->add(measurement); }
 void PoseGraph::add(const PositionMeasurement& measurement) { problem_->add(measurement); }
 void PoseGraph::add(const GraphLandmark& landmark) { problem_->add(landmark); }
-void PoseGraph::add(const Sighting& sighting) { problem_->add(sighting); }
+void PoseGraph::add(const LandmarkObservation& observation) { problem_->add(observation); }
 void PoseGraph::add(const AzimuthPrior& prior) { problem_->add(prior); }
 void PoseGraph::add(const HeightOffsetPrior& prior) { problem_->add(prior); }
 

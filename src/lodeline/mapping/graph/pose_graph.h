@@ -47,7 +47,7 @@ class PoseGraph {
   void add(const HeightMeasurement& measurement);
   void add(const PositionMeasurement& measurement);
   void add(const GraphLandmark& landmark);
-  void add(const Sighting& sighting);
+  void add(const LandmarkObservation& observation);
   /// A later prior of the same dive replaces an earlier one. Without one, the azimuth or offset is free.
   void add(const AzimuthPrior& prior);
   void add(const HeightOffsetPrior& prior);

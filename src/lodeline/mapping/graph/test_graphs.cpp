@@ -41,7 +41,7 @@ RelativePose withError(const RelativePose& truth, std::mt19937_64* generator) {
           truth.covariance};
 }
 
-CircuitDive swumCircuit(const CircuitOptions& options, std::mt19937_64* generator) {
+CircuitDive swumCircuit(const GraphCircuitOptions& options, std::mt19937_64* generator) {
   CircuitDive dive{options.dive, options.first_id, {}, {}};
   std::normal_distribution<double> normal;
   // Error [dp, dtheta] of odometry in world axes: true = (exp(dtheta) R, p + dp). Gravity bounds roll and

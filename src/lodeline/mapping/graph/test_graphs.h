@@ -21,7 +21,7 @@ struct CircuitDive {
   std::vector<MapKeyframe> keyframes;  ///< odometry with drift and its covariance
 };
 
-struct CircuitOptions {
+struct GraphCircuitOptions {
   int keyframes = 300;  ///< 150 for one round
   int dive = 0;
   KeyframeId first_id = 0;
@@ -29,7 +29,7 @@ struct CircuitOptions {
   double position_m_per_sqrt_m = 0.01;
   double rotation_rad_per_sqrt_m = 0.003;  ///< about the vertical; roll and pitch err by 0.1 degrees
 };
-CircuitDive swumCircuit(const CircuitOptions& options, std::mt19937_64* generator);
+CircuitDive swumCircuit(const GraphCircuitOptions& options, std::mt19937_64* generator);
 
 /// Covariance of loops: 2 cm, 0.3 degrees.
 Mat6 loopCovariance();

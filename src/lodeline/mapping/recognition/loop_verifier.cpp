@@ -183,7 +183,7 @@ class Verification {
         MapFeature further;
         further.rays = {feature.rays[r]};
         LoopCorrespondence there = pair;
-        (pair.is_point_old ? there.in_new : there.in_old) = sightingOf(further);
+        (pair.is_point_old ? there.in_new : there.in_old) = observationOf(further);
         ++observed;
         agreeing += isInlier(residualOf(there, pose_.old_from_new, false)) ? 1 : 0;
       }

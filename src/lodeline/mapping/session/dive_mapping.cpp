@@ -294,18 +294,18 @@ GraphSummary DiveMapping::solve() {
   if (new_ties_.empty()) return solution;
   const GraphCovariance covariances = graph_.covariance();
   for (auto& [tie, place] : new_ties_) {
-    const auto sighting = std::find_if(solution.factors.begin(), solution.factors.end(),
-                                       [name = place, id = tie.new_keyframe](const FactorReport& factor) {
-                                         return factor.kind == FactorReport::Kind::Sighting &&
-                                                factor.from == id && factor.name == name;
-                                       });
-    const bool is_used = sighting != solution.factors.end() && sighting->accepted;
+    const auto observation = std::find_if(solution.factors.begin(), solution.factors.end(),
+                                          [name = place, id = tie.new_keyframe](const FactorReport& factor) {
+                                            return factor.kind == FactorReport::Kind::LandmarkObservation &&
+                                                   factor.from == id && factor.name == name;
+                                          });
+    const bool is_used = observation != solution.factors.end() && observation->accepted;
     const RelativePose relative = covariances.relative(tie.old_keyframe, tie.new_keyframe);
     tie.old_from_new = relative.from_from_to;
     tie.covariance = relative.covariance;
     if (!is_used) {
       tie.status = LoopStatus::Refused;
-      tie.reason = sighting == solution.factors.end() ? "not in the graph" : sighting->reason;
+      tie.reason = observation == solution.factors.end() ? "not in the graph" : observation->reason;
       ++summary_.refused;
     } else {
       known_.addLoop(tie.old_keyframe, tie.new_keyframe, relative);

@@ -107,12 +107,12 @@ void addControl(const MapFile& map, MapGraph* result) {
   }
   for (const ControlObservation& seen : map.controlObservations()) {
     const ControlPoint& point = points.at(seen.point);
-    Sighting sighting;
-    sighting.landmark = point.name;
-    sighting.node = seen.keyframe;
-    sighting.point_B = seen.in_body.position;
-    sighting.covariance = seen.in_body.covariance;
-    result->graph.add(sighting);
+    LandmarkObservation observation;
+    observation.landmark = point.name;
+    observation.node = seen.keyframe;
+    observation.point_B = seen.in_body.position;
+    observation.covariance = seen.in_body.covariance;
+    result->graph.add(observation);
   }
 }
 

@@ -102,7 +102,7 @@ std::vector<SeenTag> RunMapping::tagsIn(const FramePacket& packet) const {
   std::vector<SeenTag> tags;
   for (size_t i = 0; i < std::min(tag_observers_.size(), packet.images.size()); ++i) {
     if (packet.images[i].empty()) continue;
-    for (const TagSighting& seen : tag_observers_[i].observe(packet.images[i])) {
+    for (const TagObservation& seen : tag_observers_[i].observe(packet.images[i])) {
       // The errors of the size are the same in all cameras, so one of them speaks for all.
       const bool is_known =
           std::any_of(tags.begin(), tags.end(), [&](const SeenTag& other) { return other.tag == seen.tag; });

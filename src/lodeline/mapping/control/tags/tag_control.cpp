@@ -22,13 +22,13 @@ const ControlPoint& pointOfTag(int tag, ControlSet* control) {
 
 }  // namespace
 
-std::vector<ControlFactor> factorsOfTags(KeyframeId keyframe, std::span<const TagSighting> sightings,
+std::vector<ControlFactor> factorsOfTags(KeyframeId keyframe, std::span<const TagObservation> observations,
                                          ControlSet* control) {
   std::vector<ControlFactor> factors;
-  for (const TagSighting& sighting : sightings) {
-    if (!sighting.centre_B) continue;
-    const ControlPoint& point = pointOfTag(sighting.tag, control);
-    factors.push_back({point.name, ControlKind::Tag, keyframe, *sighting.centre_B, point.position});
+  for (const TagObservation& observation : observations) {
+    if (!observation.centre_B) continue;
+    const ControlPoint& point = pointOfTag(observation.tag, control);
+    factors.push_back({point.name, ControlKind::Tag, keyframe, *observation.centre_B, point.position});
   }
   return factors;
 }

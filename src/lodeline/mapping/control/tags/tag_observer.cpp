@@ -44,7 +44,7 @@ TagObserver::TagObserver(std::shared_ptr<const Camera> camera, const Rigid3& bod
   options_.check();
 }
 
-std::vector<TagSighting> TagObserver::observe(const cv::Mat& image) const {
+std::vector<TagObservation> TagObserver::observe(const cv::Mat& image) const {
   std::vector<FoundTag> tags = detector_.find(image, CalibrationBoard::kFamilySize);
   std::erase_if(tags, [&](const FoundTag& tag) {
     return tag.wrong_bits > options_.most_wrong_bits || tag.edge_px() < options_.least_edge_px;
@@ -52,16 +52,16 @@ std::vector<TagSighting> TagObserver::observe(const cv::Mat& image) const {
   std::stable_sort(tags.begin(), tags.end(), [](const FoundTag& a, const FoundTag& b) {
     return std::tuple(a.id, a.wrong_bits, -a.margin) < std::tuple(b.id, b.wrong_bits, -b.margin);
   });
-  std::vector<TagSighting> sightings;
+  std::vector<TagObservation> observations;
   for (auto tag = tags.begin(); tag != tags.end();) {
     const auto end =
         std::find_if(tag, tags.end(), [&](const FoundTag& other) { return other.id != tag->id; });
     if (std::all_of(tag, end, [&](const FoundTag& other) { return areSameSquare(*tag, other); })) {
-      if (auto one = sighting(*tag)) sightings.push_back(std::move(*one));
+      if (auto one = observation(*tag)) observations.push_back(std::move(*one));
     }
     tag = end;
   }
-  return sightings;
+  return observations;
 }
 
 std::optional<BodyRay> TagObserver::rayOf(const Vec2& pixel) const {
@@ -83,26 +83,26 @@ std::optional<BodyRay> TagObserver::rayOf(const Vec2& pixel) const {
   return ray;
 }
 
-std::optional<TagSighting> TagObserver::sighting(const FoundTag& tag) const {
+std::optional<TagObservation> TagObserver::observation(const FoundTag& tag) const {
   if (tag.wrong_bits > options_.most_wrong_bits || tag.edge_px() < options_.least_edge_px)
     return std::nullopt;
-  TagSighting sighting;
-  sighting.tag = tag.id;
+  TagObservation observation;
+  observation.tag = tag.id;
   for (size_t k = 0; k < 4; ++k) {
     const auto ray = rayOf(tag.corners[k]);
     if (!ray) return std::nullopt;
-    sighting.corners[k] = *ray;
+    observation.corners[k] = *ray;
   }
   const auto stated = options_.sizes_m.find(tag.id);
   const double size_m = stated != options_.sizes_m.end() ? stated->second : options_.size_m;
-  if (size_m == 0.0) return sighting;
-  const auto pose = tagPose(sighting.corners, size_m);
+  if (size_m == 0.0) return observation;
+  const auto pose = tagPose(observation.corners, size_m);
   if (!pose || pose->rms_sigmas > options_.most_rms_sigmas) return std::nullopt;
-  sighting.centre_B = pose->centre_B;
+  observation.centre_B = pose->centre_B;
   // An error of the size scales the distance from the camera.
-  const Vec3 along = options_.size_sigma_share * (pose->centre_B.position - sighting.corners[0].origin_B);
-  sighting.centre_B->covariance += along * along.transpose();
-  return sighting;
+  const Vec3 along = options_.size_sigma_share * (pose->centre_B.position - observation.corners[0].origin_B);
+  observation.centre_B->covariance += along * along.transpose();
+  return observation;
 }
 
 }  // namespace lodeline

@@ -30,7 +30,7 @@ struct TagOptions {
 };
 
 /// A tag seen at one keyframe.
-struct TagSighting {
+struct TagObservation {
   int tag = 0;
   std::array<BodyRay, 4> corners;         ///< lower left, lower right, upper right, upper left of the print
   std::optional<PositionPrior> centre_B;  ///< where the size is known
@@ -44,10 +44,10 @@ class TagObserver {
               const TagOptions& options);
 
   /// Tags in an 8-bit grey image, each once, by number. Tags that appear twice in one image are left out.
-  std::vector<TagSighting> observe(const cv::Mat& image) const;
+  std::vector<TagObservation> observe(const cv::Mat& image) const;
 
  private:
-  std::optional<TagSighting> sighting(const FoundTag& tag) const;
+  std::optional<TagObservation> observation(const FoundTag& tag) const;
   std::optional<BodyRay> rayOf(const Vec2& pixel) const;
 
   std::shared_ptr<const Camera> camera_;

@@ -87,19 +87,19 @@ TEST_F(TagObserverTest, FindsTagsWithTheirPlaceInTheBody) {
   const Rigid3 right = facing(Vec3(0.2, -0.1, 0.7), Vec3(-0.5, 0.1, 2.0));
   draw(301, left, &view);
   draw(17, right, &view);
-  const std::vector<TagSighting> sightings = observer(kSize_m).observe(view);
-  ASSERT_EQ(sightings.size(), 2u);
-  EXPECT_EQ(sightings[0].tag, 17);
-  EXPECT_EQ(sightings[1].tag, 301);
-  for (const TagSighting& sighting : sightings) {
-    const Rigid3& camera_from_tag = sighting.tag == 17 ? right : left;
-    const Vec3 error = sighting.centre_B->position - body_from_camera_ * camera_from_tag.translation;
-    EXPECT_LT(error.dot(sighting.centre_B->covariance.ldlt().solve(error)), 16.3);
+  const std::vector<TagObservation> observations = observer(kSize_m).observe(view);
+  ASSERT_EQ(observations.size(), 2u);
+  EXPECT_EQ(observations[0].tag, 17);
+  EXPECT_EQ(observations[1].tag, 301);
+  for (const TagObservation& observation : observations) {
+    const Rigid3& camera_from_tag = observation.tag == 17 ? right : left;
+    const Vec3 error = observation.centre_B->position - body_from_camera_ * camera_from_tag.translation;
+    EXPECT_LT(error.dot(observation.centre_B->covariance.ldlt().solve(error)), 16.3);
     EXPECT_LT(error.norm(), 0.02 * camera_from_tag.translation.norm());
     for (int k = 0; k < 4; ++k) {
       const double x = k == 0 || k == 3 ? -0.5 : 0.5, y = k < 2 ? -0.5 : 0.5;
       const Vec3 corner_B = body_from_camera_ * (camera_from_tag * (kSize_m * Vec3(x, y, 0)));
-      const BodyRay& ray = sighting.corners[static_cast<size_t>(k)];
+      const BodyRay& ray = observation.corners[static_cast<size_t>(k)];
       const Vec3 expected = (corner_B - ray.origin_B).normalized();
       EXPECT_LT((ray.bearing_B - expected).norm(), 4.0 * ray.sigma_rad) << "corner " << k;
       EXPECT_NEAR(ray.sigma_rad, 0.3 / 450.0, 0.3 * 0.3 / 450.0);
@@ -110,11 +110,11 @@ TEST_F(TagObserverTest, FindsTagsWithTheirPlaceInTheBody) {
 TEST_F(TagObserverTest, GivesRaysAloneWhereTheSizeIsUnknown) {
   cv::Mat view = image();
   draw(5, facing(Vec3(0, 0, 0.8), Vec3(0, 0.2, 0)), &view);
-  const std::vector<TagSighting> sightings = observer(0.0).observe(view);
-  ASSERT_EQ(sightings.size(), 1u);
-  EXPECT_FALSE(sightings[0].centre_B);
+  const std::vector<TagObservation> observations = observer(0.0).observe(view);
+  ASSERT_EQ(observations.size(), 1u);
+  EXPECT_FALSE(observations[0].centre_B);
   ControlSet control;
-  EXPECT_THAT(factorsOfTags(1, sightings, &control), IsEmpty());
+  EXPECT_THAT(factorsOfTags(1, observations, &control), IsEmpty());
 }
 
 TEST_F(TagObserverTest, LeavesOutATagThatIsSeenTwiceAndOneTooSmall) {
@@ -149,18 +149,18 @@ TEST_F(TagObserverTest, FindsNoTagInNoise) {
 }
 
 TEST_F(TagObserverTest, NamesATagAtTwoPlaces) {
-  const auto sightingAt = [](const Vec3& centre_B) {
-    TagSighting sighting;
-    sighting.tag = 9;
-    sighting.centre_B = PositionPrior{centre_B, 1e-4 * Mat3::Identity()};
-    return sighting;
+  const auto observationAt = [](const Vec3& centre_B) {
+    TagObservation observation;
+    observation.tag = 9;
+    observation.centre_B = PositionPrior{centre_B, 1e-4 * Mat3::Identity()};
+    return observation;
   };
   ControlSet control;
   std::vector<ControlFactor> factors;
   for (const auto& [keyframe, place] :
        {std::pair<KeyframeId, Vec3>{1, {1, 0, 0}}, {2, {1, 0, 0.01}}, {3, {1, 2, 0}}}) {
-    const TagSighting sighting = sightingAt(place);
-    for (ControlFactor& factor : factorsOfTags(keyframe, std::span(&sighting, 1), &control))
+    const TagObservation observation = observationAt(place);
+    for (ControlFactor& factor : factorsOfTags(keyframe, std::span(&observation, 1), &control))
       factors.push_back(factor);
   }
   ASSERT_EQ(control.points.size(), 1u);

@@ -8,9 +8,9 @@
 #include "lodeline/geometry/so3.h"
 #include "lodeline/mapping/graph/factors/heading_factor.h"
 #include "lodeline/mapping/graph/factors/height_factor.h"
+#include "lodeline/mapping/graph/factors/landmark_observation_factor.h"
 #include "lodeline/mapping/graph/factors/position_factor.h"
 #include "lodeline/mapping/graph/factors/relative_pose_factor.h"
-#include "lodeline/mapping/graph/factors/sighting_factor.h"
 #include "lodeline/mapping/graph/factors/tilt_factor.h"
 #include "lodeline/mapping/graph/test_graphs.h"
 
@@ -59,7 +59,7 @@ TEST(GraphFactors, AreZeroAtTruth) {
       residualOf(PositionFactor(kFrom * Vec3(1, 2, 3), Mat3::Identity(), Vec3(1, 2, 3)), {poseVector(kFrom)})
           .norm(),
       1e-10);
-  EXPECT_LT(residualOf(SightingFactor(kFrom.inverse() * seen_W, Mat3::Identity()),
+  EXPECT_LT(residualOf(LandmarkObservationFactor(kFrom.inverse() * seen_W, Mat3::Identity()),
                        {poseVector(kFrom), Eigen::VectorXd(seen_W)})
                 .norm(),
             1e-10);
@@ -74,7 +74,7 @@ TEST(GraphFactors, JacobiansMatchNumericDifferentiation) {
   expectJacobiansMatch(HeadingFactor(kTo.rotation, 0.01), {poseVector(kFrom), scalar(0.3)});
   expectJacobiansMatch(HeightFactor(1.0, 0.02), {poseVector(kFrom), scalar(0.3)});
   expectJacobiansMatch(PositionFactor(Vec3(1, 1, 1), covariance, Vec3(0.3, -0.2, 0.1)), {poseVector(kFrom)});
-  expectJacobiansMatch(SightingFactor(Vec3(1, 1, 1), covariance),
+  expectJacobiansMatch(LandmarkObservationFactor(Vec3(1, 1, 1), covariance),
                        {poseVector(kFrom), Eigen::VectorXd(Vec3(3, 2, 1))});
 }
 
@@ -90,9 +90,9 @@ TEST(GraphFactors, DoNotChangeWithACommonMotionOfTheWorld) {
   const HeadingFactor heading(kTo.rotation, 0.01);
   EXPECT_NEAR(residualOf(heading, {poseVector(kFrom), scalar(0.3)})[0],
               residualOf(heading, {poseVector(kMotion * kFrom), scalar(0.3 + 1.1)})[0], 1e-9);
-  const SightingFactor sighting(Vec3(1, 1, 1), Mat3::Identity());
-  EXPECT_LT((residualOf(sighting, {poseVector(kFrom), Eigen::VectorXd(Vec3(3, 2, 1))}) -
-             residualOf(sighting, {poseVector(kMotion * kFrom), Eigen::VectorXd(kMotion * Vec3(3, 2, 1))}))
+  const LandmarkObservationFactor observation(Vec3(1, 1, 1), Mat3::Identity());
+  EXPECT_LT((residualOf(observation, {poseVector(kFrom), Eigen::VectorXd(Vec3(3, 2, 1))}) -
+             residualOf(observation, {poseVector(kMotion * kFrom), Eigen::VectorXd(kMotion * Vec3(3, 2, 1))}))
                 .norm(),
             1e-9);
 }
@@ -104,22 +104,22 @@ TEST(GraphFactors, AreWhiteUnderTheirOwnNoise) {
   const Vec3 seen_W(5, 0, 2);
   const int trials = 4000;
   Mat6 edge = Mat6::Zero();
-  Mat3 sighting = Mat3::Zero(), position = Mat3::Zero();
+  Mat3 observation = Mat3::Zero(), position = Mat3::Zero();
   for (int k = 0; k < trials; ++k) {
     const RelativePose measured = withError({kFrom.inverse() * kTo, covariance}, &generator);
     const Vec6 r = residualOf(RelativePoseFactor(measured), {poseVector(kFrom), poseVector(kTo)});
     edge += r * r.transpose() / trials;
     const Vec3 point_B = kFrom.inverse() * seen_W + drawn(covariance_3, &generator);
-    const Vec3 s =
-        residualOf(SightingFactor(point_B, covariance_3), {poseVector(kFrom), Eigen::VectorXd(seen_W)});
-    sighting += s * s.transpose() / trials;
+    const Vec3 s = residualOf(LandmarkObservationFactor(point_B, covariance_3),
+                              {poseVector(kFrom), Eigen::VectorXd(seen_W)});
+    observation += s * s.transpose() / trials;
     const Vec3 position_W = kFrom.translation + drawn(covariance_3, &generator);
     const Vec3 p = residualOf(PositionFactor(position_W, covariance_3, Vec3::Zero()), {poseVector(kFrom)});
     position += p * p.transpose() / trials;
   }
   // Entries of a sample covariance scatter by sqrt(2 / n) = 0.022 at most; 4.5 sigma.
   EXPECT_LT((edge - Mat6::Identity()).cwiseAbs().maxCoeff(), 0.1);
-  EXPECT_LT((sighting - Mat3::Identity()).cwiseAbs().maxCoeff(), 0.1);
+  EXPECT_LT((observation - Mat3::Identity()).cwiseAbs().maxCoeff(), 0.1);
   EXPECT_LT((position - Mat3::Identity()).cwiseAbs().maxCoeff(), 0.1);
 }
 
@@ -159,7 +159,7 @@ TEST(GraphFactors, RefuseNoiseThatIsNone) {
   EXPECT_THROW(HeadingFactor(Quat::Identity(), -1.0), InputError);
   EXPECT_THROW(HeightFactor(std::nan(""), 1.0), InputError);
   EXPECT_THROW(PositionFactor(Vec3::Zero(), -Mat3::Identity(), Vec3::Zero()), InputError);
-  EXPECT_THROW(SightingFactor(Vec3::Constant(INFINITY), Mat3::Identity()), InputError);
+  EXPECT_THROW(LandmarkObservationFactor(Vec3::Constant(INFINITY), Mat3::Identity()), InputError);
 }
 
 }  // namespace

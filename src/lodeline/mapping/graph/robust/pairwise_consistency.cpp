@@ -19,7 +19,7 @@ RelativePose poseOf(const Loop& loop) { return {loop.old_from_new, loop.covarian
 
 }  // namespace
 
-void ConsistencyOptions::check() const { chiSquaredQuantile(probability, 6); }
+void PairwiseConsistencyOptions::check() const { chiSquaredQuantile(probability, 6); }
 
 Circuit circuitOf(const Loop& a, const Loop& b, const OdometryBetween& odometry) {
   const RelativePose by_a = composed(poseOf(a), odometry(a.new_keyframe, b.new_keyframe));
@@ -28,7 +28,7 @@ Circuit circuitOf(const Loop& a, const Loop& b, const OdometryBetween& odometry)
 }
 
 ConsistentLoops largestConsistentSet(const std::vector<Loop>& loops, const OdometryBetween& odometry,
-                                     const ConsistencyOptions& options) {
+                                     const PairwiseConsistencyOptions& options) {
   options.check();
   const double limit = chiSquaredQuantile(options.probability, 6);
   for (const Loop& loop : loops) check(loop);

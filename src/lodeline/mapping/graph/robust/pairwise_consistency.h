@@ -8,7 +8,7 @@
 
 namespace lodeline {
 
-struct ConsistencyOptions {
+struct PairwiseConsistencyOptions {
   /// Probability with which two true loops count as consistent: 3 sigma.
   double probability = 0.9973;
 
@@ -40,6 +40,6 @@ Circuit circuitOf(const Loop& a, const Loop& b, const OdometryBetween& odometry)
 /// have their old keyframes in one dive and their new keyframes in one dive; both may be the same dive. One
 /// loop alone is always consistent: the caller decides how many must agree.
 ConsistentLoops largestConsistentSet(const std::vector<Loop>& loops, const OdometryBetween& odometry,
-                                     const ConsistencyOptions& options = {});
+                                     const PairwiseConsistencyOptions& options = {});
 
 }  // namespace lodeline

@@ -16,23 +16,24 @@ constexpr double kUnknownDistance = 1.0 / 3.0;
 
 }  // namespace
 
-Sighting sightingOf(const MapFeature& feature) {
+PointObservation observationOf(const MapFeature& feature) {
   const BodyRay& ray = feature.rays.front();
-  Sighting sighting;
-  sighting.origin_B = ray.origin_B;
-  sighting.bearing_B = ray.bearing_B;
-  sighting.tangent_B = tangentBasis(ray.bearing_B);
-  sighting.sigma_rad = ray.sigma_rad;
-  if (!feature.point_B) return sighting;
-  sighting.point_B = *feature.point_B;
-  sighting.distance_m = (sighting.point_B - ray.origin_B).norm();
-  sighting.distance_sigma_m = feature.distance_sigma_m;
-  if (!(sighting.distance_m > 0.0) || !(sighting.relativeSigma() < kUnknownDistance)) return sighting;
-  sighting.has_point = true;
+  PointObservation observation;
+  observation.origin_B = ray.origin_B;
+  observation.bearing_B = ray.bearing_B;
+  observation.tangent_B = tangentBasis(ray.bearing_B);
+  observation.sigma_rad = ray.sigma_rad;
+  if (!feature.point_B) return observation;
+  observation.point_B = *feature.point_B;
+  observation.distance_m = (observation.point_B - ray.origin_B).norm();
+  observation.distance_sigma_m = feature.distance_sigma_m;
+  if (!(observation.distance_m > 0.0) || !(observation.relativeSigma() < kUnknownDistance))
+    return observation;
+  observation.has_point = true;
   const Mat3 along = ray.bearing_B * ray.bearing_B.transpose();
-  sighting.covariance = std::pow(sighting.distance_sigma_m, 2) * along +
-                        std::pow(ray.sigma_rad * sighting.distance_m, 2) * (Mat3::Identity() - along);
-  return sighting;
+  observation.covariance = std::pow(observation.distance_sigma_m, 2) * along +
+                           std::pow(ray.sigma_rad * observation.distance_m, 2) * (Mat3::Identity() - along);
+  return observation;
 }
 
 std::optional<LoopCorrespondence> correspondenceOf(const MapKeyframe& old_keyframe,
@@ -40,8 +41,8 @@ std::optional<LoopCorrespondence> correspondenceOf(const MapKeyframe& old_keyfra
                                                    const FeatureMatch& match) {
   LoopCorrespondence pair;
   pair.match = match;
-  pair.in_old = sightingOf(old_keyframe.features[static_cast<size_t>(match.old_feature)]);
-  pair.in_new = sightingOf(new_keyframe.features[static_cast<size_t>(match.new_feature)]);
+  pair.in_old = observationOf(old_keyframe.features[static_cast<size_t>(match.old_feature)]);
+  pair.in_new = observationOf(new_keyframe.features[static_cast<size_t>(match.new_feature)]);
   if (!pair.in_old.has_point && !pair.in_new.has_point) return std::nullopt;
   pair.is_point_old = pair.in_old.has_point &&
                       (!pair.in_new.has_point || pair.in_old.relativeSigma() <= pair.in_new.relativeSigma());
@@ -49,8 +50,8 @@ std::optional<LoopCorrespondence> correspondenceOf(const MapKeyframe& old_keyfra
 }
 
 LoopResidual residualOf(const LoopCorrespondence& pair, const Rigid3& old_from_new, bool with_jacobian) {
-  const Sighting& ray = pair.ray();
-  const Sighting& seen = pair.point();
+  const PointObservation& ray = pair.ray();
+  const PointObservation& seen = pair.point();
   LoopResidual residual;
   // The point in axes of the ray's body.
   const Mat3 old_rotation_new = old_from_new.rotation.toRotationMatrix();

@@ -8,7 +8,7 @@
 namespace lodeline {
 
 /// What one keyframe knows about a point: a ray and, where it is known, the position on it.
-struct Sighting {
+struct PointObservation {
   Vec3 origin_B = Vec3::Zero();
   Vec3 bearing_B = Vec3::UnitZ();
   Mat32 tangent_B = Mat32::Identity();  ///< basis of the plane normal to the bearing
@@ -21,17 +21,17 @@ struct Sighting {
 
   double relativeSigma() const { return distance_sigma_m / distance_m; }
 };
-Sighting sightingOf(const MapFeature& feature);
+PointObservation observationOf(const MapFeature& feature);
 
-/// A match whose residual depends on the pose: at least one of both sightings has a position.
+/// A match whose residual depends on the pose: at least one of both observations has a position.
 struct LoopCorrespondence {
   FeatureMatch match;
-  Sighting in_old, in_new;
+  PointObservation in_old, in_new;
   /// Whether the position comes from the old keyframe and the ray from the new one, or the reverse.
   bool is_point_old = true;
 
-  const Sighting& ray() const { return is_point_old ? in_new : in_old; }
-  const Sighting& point() const { return is_point_old ? in_old : in_new; }
+  const PointObservation& ray() const { return is_point_old ? in_new : in_old; }
+  const PointObservation& point() const { return is_point_old ? in_old : in_new; }
 };
 
 /// Correspondence of a match; empty where neither feature has a position. Where both have one, the more

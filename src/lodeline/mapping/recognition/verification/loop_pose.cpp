@@ -95,7 +95,7 @@ Mat6 informationOfStructure(const std::vector<LoopCorrespondence>& pairs, const 
     if (!is_used[i]) continue;
     const auto jacobian = [&](double sigmas) {
       LoopCorrespondence moved_pair = pairs[i];
-      Sighting& point = moved_pair.is_point_old ? moved_pair.in_old : moved_pair.in_new;
+      PointObservation& point = moved_pair.is_point_old ? moved_pair.in_old : moved_pair.in_new;
       point.point_B += sigmas * point.distance_sigma_m * point.bearing_B;
       return residualOf(moved_pair, pose.old_from_new, true).by_pose;
     };

@@ -58,8 +58,8 @@ class Sampler {
   /// new one.
   PointOnRay sample(size_t index, bool is_old) const {
     const LoopCorrespondence& pair = pairs_[index];
-    const Sighting& seen = is_old ? pair.in_old : pair.in_new;
-    const Sighting& ray = is_old ? pair.in_new : pair.in_old;
+    const PointObservation& seen = is_old ? pair.in_old : pair.in_new;
+    const PointObservation& ray = is_old ? pair.in_new : pair.in_old;
     const Quat& point_level = is_old ? old_level_ : new_level_;
     const Quat& ray_level = is_old ? new_level_ : old_level_;
     return {point_level * seen.point_B, ray_level * ray.origin_B, ray_level * ray.bearing_B};

@@ -10,7 +10,7 @@
 namespace lodeline {
 namespace {
 
-/// Path between two sightings from which on they tie the graph together and are reported, m.
+/// Path between two observations from which on they tie the graph together and are reported, m.
 constexpr double kLeastTiePath_m = 8.0;
 
 Loop rowOf(KeyframeId old_keyframe, KeyframeId new_keyframe, double chi_squared) {
@@ -76,7 +76,7 @@ void DiveTags::load(const MapFile& earlier) {
   for (const ControlObservation& seen : earlier.controlObservations()) {
     const auto place = place_of.find(seen.point);
     if (place == place_of.end()) continue;
-    places_[place->second].sightings.push_back(
+    places_[place->second].observations.push_back(
         {seen.keyframe, seen.in_body.position, seen.in_body.covariance});
   }
 }
@@ -100,7 +100,7 @@ TagStep DiveTags::add(const MapKeyframe& keyframe, const KnownKeyframes& known, 
 const TagSeenAt* DiveTags::referenceOf(const TagPlace& place, KeyframeId newest,
                                        const KnownKeyframes& known) const {
   const TagSeenAt* reference = nullptr;
-  for (auto seen = place.sightings.rbegin(); seen != place.sightings.rend(); ++seen) {
+  for (auto seen = place.observations.rbegin(); seen != place.observations.rend(); ++seen) {
     if (known.at(seen->keyframe).dive == dive_) return &*seen;
     if (!reference && known.predict(seen->keyframe, newest)) reference = &*seen;
   }
@@ -114,7 +114,7 @@ void DiveTags::place(int tag, const TagSeenAt& seen, const Work& work) {
   std::optional<KeyframeId> refused_by;
   for (size_t i = 0; i < places_.size(); ++i) {
     if (places_[i].tag != tag) continue;
-    if (places_[i].sightings.empty()) {
+    if (places_[i].observations.empty()) {
       unseen = i;
       continue;
     }
@@ -162,24 +162,24 @@ void DiveTags::joinPlace(size_t place, const TagSeenAt& seen, const TagSeenAt* r
   if (reference) {
     const KnownKeyframe &before = work.known.at(reference->keyframe), &now = work.known.at(seen.keyframe);
     const bool is_other_dive = before.dive != dive_;
-    if (is_other_dive && work.join(reference->keyframe)) addSighting(place, *reference, work);
+    if (is_other_dive && work.join(reference->keyframe)) addObservation(place, *reference, work);
     if (is_other_dive || now.path_m - before.path_m >= kLeastTiePath_m)
       work.step->ties.push_back(tieOf(reference->keyframe, seen.keyframe, chi_squared, places_[place].name));
   }
-  addSighting(place, seen, work);
-  places_[place].sightings.push_back(seen);
+  addObservation(place, seen, work);
+  places_[place].observations.push_back(seen);
 }
 
-void DiveTags::addSighting(size_t place, const TagSeenAt& seen, const Work& work) {
+void DiveTags::addObservation(size_t place, const TagSeenAt& seen, const Work& work) {
   const std::string& name = places_[place].name;
   if (landmarks_.insert(place).second) work.graph->add(GraphLandmark{name, std::nullopt, Mat3::Identity()});
   if (!in_graph_.insert({place, seen.keyframe}).second) return;
-  Sighting sighting;
-  sighting.landmark = name;
-  sighting.node = seen.keyframe;
-  sighting.point_B = seen.centre_B;
-  sighting.covariance = seen.covariance;
-  work.graph->add(sighting);
+  LandmarkObservation observation;
+  observation.landmark = name;
+  observation.node = seen.keyframe;
+  observation.point_B = seen.centre_B;
+  observation.covariance = seen.covariance;
+  work.graph->add(observation);
 }
 
 void DiveTags::decideHeld(const Work& work) {
@@ -192,7 +192,7 @@ void DiveTags::decideByPrediction(const Work& work) {
   std::vector<double> chi_squared;
   for (const HeldTag& held : held_) {
     const TagPlace &own = places_[held.own_place], &earlier = places_[held.earlier_place];
-    const TagSeenAt &newest = own.sightings.back(), &before = earlier.sightings.back();
+    const TagSeenAt &newest = own.observations.back(), &before = earlier.observations.back();
     const auto prediction = work.known.predict(before.keyframe, newest.keyframe);
     if (!prediction) {
       open.push_back(held);
@@ -231,14 +231,14 @@ void DiveTags::decideBySpacing(const Work& work) {
 
 void DiveTags::unite(const HeldTag& held, double chi_squared, const Work& work) {
   TagPlace &own = places_[held.own_place], &earlier = places_[held.earlier_place];
-  if (own.sightings.empty()) return;  // united with another place already
-  const TagSeenAt before = earlier.sightings.back(), newest = own.sightings.back();
+  if (own.observations.empty()) return;  // united with another place already
+  const TagSeenAt before = earlier.observations.back(), newest = own.observations.back();
   if (!work.join(before.keyframe)) return;
-  addSighting(held.earlier_place, before, work);
-  addSighting(held.earlier_place, newest, work);
+  addObservation(held.earlier_place, before, work);
+  addObservation(held.earlier_place, newest, work);
   work.step->ties.push_back(tieOf(before.keyframe, newest.keyframe, chi_squared, earlier.name));
-  earlier.sightings.insert(earlier.sightings.end(), own.sightings.begin(), own.sightings.end());
-  own.sightings.clear();
+  earlier.observations.insert(earlier.observations.end(), own.observations.begin(), own.observations.end());
+  own.observations.clear();
   own.tag = -1;  // no place any more
   std::erase_if(held_, [&](const HeldTag& other) { return other.own_place == held.own_place; });
 }
@@ -249,11 +249,11 @@ TagStep DiveTags::finish(const KnownKeyframes& known, PoseGraph* graph, const Jo
   decideHeld(work);
   for (const HeldTag& held : held_) {
     const TagPlace& own = places_[held.own_place];
-    step.refused.push_back(
-        refusalOf(places_[held.earlier_place].sightings.back().keyframe, own.sightings.back().keyframe, 0.0,
-                  fmt::format("neither a second tag nor a recognized place confirms that tag {} is the one "
-                              "of the earlier dive",
-                              own.tag)));
+    step.refused.push_back(refusalOf(
+        places_[held.earlier_place].observations.back().keyframe, own.observations.back().keyframe, 0.0,
+        fmt::format("neither a second tag nor a recognized place confirms that tag {} is the one "
+                    "of the earlier dive",
+                    own.tag)));
   }
   held_.clear();
   return step;
@@ -265,14 +265,14 @@ void DiveTags::write(const KnownKeyframes& known, MapChange* change) const {
     ControlPoint point;
     if (const ControlPoint* stated = control_.find(place.name)) point = *stated;
     const auto is_own = [&](const TagSeenAt& seen) { return known.at(seen.keyframe).dive == dive_; };
-    const bool is_seen = std::any_of(place.sightings.begin(), place.sightings.end(), is_own);
+    const bool is_seen = std::any_of(place.observations.begin(), place.observations.end(), is_own);
     if (!is_seen && !point.position) continue;
     point.name = place.name;
     point.kind = ControlKind::Tag;
     point.tag = place.tag;
     if (point.origin.empty()) point.origin = "images";
     const int64_t id = change->putControlPoint(point);
-    for (const TagSeenAt& seen : place.sightings) {
+    for (const TagSeenAt& seen : place.observations) {
       if (is_own(seen)) change->addControlObservation({id, seen.keyframe, {seen.centre_B, seen.covariance}});
     }
   }

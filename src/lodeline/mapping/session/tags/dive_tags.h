@@ -29,15 +29,15 @@ struct TagTie {
 /// What the tags of one keyframe mean.
 struct TagStep {
   std::vector<TagTie> ties;
-  std::vector<Loop> refused;  ///< sightings of a number that cannot be the tag seen before
+  std::vector<Loop> refused;  ///< observations of a number that cannot be the tag seen before
 };
 
 /// The tags that a dive sees, as landmarks of its graph.
 ///
-/// A number names a tag, but two tags may carry the same number. A sighting therefore joins a place only if
-/// the predicted pose relative to an earlier sighting allows it. Otherwise it starts another place of that
-/// number, which is reported. Between dives whose relative position is unknown, one number proves nothing:
-/// two tags at the same distance from each other are needed.
+/// A number names a tag, but two tags may carry the same number. A observation therefore joins a place only
+/// if the predicted pose relative to an earlier observation allows it. Otherwise it starts another place of
+/// that number, which is reported. Between dives whose relative position is unknown, one number proves
+/// nothing: two tags at the same distance from each other are needed.
 class DiveTags {
  public:
   /// Makes sure that a keyframe of an earlier dive is in the graph; false where that is impossible.
@@ -75,7 +75,7 @@ class DiveTags {
   void joinPlace(size_t place, const TagSeenAt& seen, const TagSeenAt* reference, double chi_squared,
                  const Work& work);
   const TagSeenAt* referenceOf(const TagPlace& place, KeyframeId newest, const KnownKeyframes& known) const;
-  void addSighting(size_t place, const TagSeenAt& seen, const Work& work);
+  void addObservation(size_t place, const TagSeenAt& seen, const Work& work);
   void decideHeld(const Work& work);
   void decideByPrediction(const Work& work);
   void decideBySpacing(const Work& work);
@@ -89,7 +89,7 @@ class DiveTags {
   std::vector<TagPlace> places_;
   std::vector<HeldTag> held_;
   std::set<size_t> landmarks_;                        ///< places in the graph
-  std::set<std::pair<size_t, KeyframeId>> in_graph_;  ///< sightings in the graph
+  std::set<std::pair<size_t, KeyframeId>> in_graph_;  ///< observations in the graph
 };
 
 }  // namespace lodeline

@@ -14,7 +14,7 @@ constexpr double kSpacingQuantile = 13.816;
 /// Tags nearer than this to each other do not tell a place by their distance.
 constexpr double kLeastSpacing_m = 0.5;
 
-/// The point of a sighting in the body of another keyframe, with its covariance.
+/// The point of a observation in the body of another keyframe, with its covariance.
 TagSeenAt seenFrom(const TagSeenAt& seen, const Rigid3& from_from_to, const Mat6& covariance) {
   const Mat3 rotation = from_from_to.rotation.toRotationMatrix();
   const Vec3 arm = rotation * seen.centre_B;
@@ -65,8 +65,8 @@ TagAgreement agreementOf(const TagSeenAt& old_seen, const TagSeenAt& new_seen,
 
 bool haveSameSpacing(const TagPlace& own_1, const TagPlace& own_2, const TagPlace& earlier_1,
                      const TagPlace& earlier_2, const KnownKeyframes& known) {
-  const Spacing own = spacingOf(own_1.sightings.back(), own_2.sightings.back(), known);
-  const Spacing earlier = spacingOf(earlier_1.sightings.back(), earlier_2.sightings.back(), known);
+  const Spacing own = spacingOf(own_1.observations.back(), own_2.observations.back(), known);
+  const Spacing earlier = spacingOf(earlier_1.observations.back(), earlier_2.observations.back(), known);
   if (std::min(own.horizontal_m, earlier.horizontal_m) < kLeastSpacing_m) return false;
   const double horizontal = own.horizontal_m - earlier.horizontal_m;
   const double height = own.height_m - earlier.height_m;

@@ -15,21 +15,22 @@ struct TagSeenAt {
   Mat3 covariance = Mat3::Identity();  ///< m^2, body axes
 };
 
-/// A place at which a tag hangs. All its sightings show the same point.
+/// A place at which a tag hangs. All its observations show the same point.
 struct TagPlace {
   int tag = 0;
   std::string name;  ///< of its control point
-  std::vector<TagSeenAt> sightings;
+  std::vector<TagSeenAt> observations;
 };
 
-/// How far two sightings are from showing the same point, by the predicted pose of one keyframe in the other.
+/// How far two observations are from showing the same point, by the predicted pose of one keyframe in the
+/// other.
 struct TagAgreement {
   double distance_m = 0.0;
   double chi_squared = 0.0;  ///< 3 degrees of freedom
   bool holds() const;
 };
 
-/// The sightings show the points q_a and q_b in two bodies. With the pose (R, p) of the second body in the
+/// The observations show the points q_a and q_b in two bodies. With the pose (R, p) of the second body in the
 /// first, the difference is q_a - (R q_b + p). Its covariance is Q_a + R Q_b R^T + J P J^T with
 /// J = [I, -[R q_b]x] and the covariance P of the pose.
 TagAgreement agreementOf(const TagSeenAt& old_seen, const TagSeenAt& new_seen,

@@ -9,9 +9,9 @@ namespace lodeline {
 /// A landmark at x_W seen from a body, measured as s_B with covariance C in body axes:
 ///   r = L^-1 (R_WB^T (x_W - p) - s_B),   C = L L^T.
 /// Parameters: pose of the body, position of the landmark.
-class SightingFactor final : public ceres::SizedCostFunction<3, kPoseSize, 3> {
+class LandmarkObservationFactor final : public ceres::SizedCostFunction<3, kPoseSize, 3> {
  public:
-  SightingFactor(const Vec3& point_B, const Mat3& covariance);
+  LandmarkObservationFactor(const Vec3& point_B, const Mat3& covariance);
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
  private:

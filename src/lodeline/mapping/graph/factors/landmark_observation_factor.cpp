@@ -1,4 +1,4 @@
-#include "lodeline/mapping/graph/factors/sighting_factor.h"
+#include "lodeline/mapping/graph/factors/landmark_observation_factor.h"
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/geometry/so3.h"
@@ -6,12 +6,13 @@
 
 namespace lodeline {
 
-SightingFactor::SightingFactor(const Vec3& point_B, const Mat3& covariance)
-    : point_B_(point_B), whitening_(whiteningOf<3>(covariance, "sighting")) {
-  if (!point_B.allFinite()) throw InputError("sighting: the point is not finite");
+LandmarkObservationFactor::LandmarkObservationFactor(const Vec3& point_B, const Mat3& covariance)
+    : point_B_(point_B), whitening_(whiteningOf<3>(covariance, "observation")) {
+  if (!point_B.allFinite()) throw InputError("observation: the point is not finite");
 }
 
-bool SightingFactor::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const {
+bool LandmarkObservationFactor::Evaluate(double const* const* parameters, double* residuals,
+                                         double** jacobians) const {
   const Rigid3 world_from_body = poseFromBlock(parameters[0]);
   const Vec3 way_W = Eigen::Map<const Vec3>(parameters[1]) - world_from_body.translation;
   const Mat3 body_from_world = world_from_body.rotation.conjugate().toRotationMatrix();
