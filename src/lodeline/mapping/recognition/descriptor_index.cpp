@@ -24,7 +24,7 @@ bool bitOf(const Descriptor& descriptor, int bit) {
 void DescriptorIndexOptions::check() const {
   OptionCheck("descriptor_index")
       .atLeast("features_per_keyframe", features_per_keyframe, 1)
-      .within("max_distance", max_distance, 0, kDescriptorBits / 2);
+      .within("max_distance", max_distance, 0, kDescriptorBits / 2.0);
 }
 
 DescriptorIndex::DescriptorIndex(const DescriptorIndexOptions& options) : options_(options), nodes_(1) {
