@@ -22,7 +22,8 @@ class PointCells {
   bool hasWithin(const Vec3& position, double distance_m) const {
     const Eigen::Array3d cell = (position / edge_m_).array().floor();
     for (int i = 0; i < 27; ++i) {
-      const auto found = cells_.find(keyOf(cell + Eigen::Array3d(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)));
+      const int x = i % 3 - 1, y = i / 3 % 3 - 1, z = i / 9 - 1;
+      const auto found = cells_.find(keyOf(cell + Eigen::Array3d(x, y, z)));
       if (found == cells_.end()) continue;
       for (const Point& point : found->second) {
         if ((point.position - position).norm() <= distance_m) return true;
