@@ -14,8 +14,7 @@ std::string lastParts(const std::filesystem::path& path, size_t count) {
   std::filesystem::path rest = path;
   std::string name;
   for (size_t i = 0; i < count && rest.has_filename(); ++i, rest = rest.parent_path()) {
-    if (!name.empty()) name.insert(0, "_");
-    name.insert(0, rest.filename().string());
+    name = fmt::format("{}{}{}", rest.filename().string(), name.empty() ? "" : "_", name);
   }
   return surveyName(name);
 }
