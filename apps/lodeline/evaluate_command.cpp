@@ -93,7 +93,7 @@ std::vector<std::string> namesOf(const std::vector<std::string>& estimates) {
     std::string name = rest.stem().string();
     while (std::find(names.begin(), names.end(), name) != names.end() && rest.has_relative_path()) {
       rest = rest.parent_path();
-      name = rest.filename().string() + "_" + name;
+      name = fmt::format("{}_{}", rest.filename().string(), name);
     }
     names.push_back(name);
   }

@@ -95,7 +95,7 @@ class SequencePreparation {
     if (!layout_.links.empty()) return prepareLinks();
     if (isBagThere()) {
       for (const auto& [sensor, topic] : layout_.topics) {
-        bag_.topics.push_back(sensor + "=" + topic);
+        bag_.topics.push_back(fmt::format("{}={}", sensor, topic));
         addArguments({"--topic", bag_.topics.back()});
       }
     }

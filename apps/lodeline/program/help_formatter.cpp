@@ -73,7 +73,7 @@ std::string HelpFormatter::make_help(const CLI::App* command, std::string name,
 
 std::string HelpFormatter::make_group(std::string group, bool is_positional,
                                       std::vector<const CLI::Option*> options) const {
-  std::string text = title(group == "Positionals" ? "Arguments" : group);
+  std::string text = title(group == "Positionals" ? std::string("Arguments") : std::move(group));
   for (const CLI::Option* option : options) text += make_option(option, is_positional);
   return text;
 }

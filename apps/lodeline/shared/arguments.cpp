@@ -42,7 +42,8 @@ bool areNumbers(const std::string& word) {
 std::string placeFrom(std::string value, const std::vector<std::string>& words, size_t* next) {
   while (areNumbers(value) && partsOf(value).size() < kNumbersOfPlace && *next < words.size() &&
          areNumbers(words[*next])) {
-    value += "," + words[(*next)++];
+    value += ",";
+    value += words[(*next)++];
   }
   return areNumbers(value) ? fmt::format("{}", fmt::join(partsOf(value), ",")) : value;
 }

@@ -52,8 +52,8 @@ class TableReader {
   /// reader.
   TableReader(std::unique_ptr<ByteSource> bytes, std::string name, TableOptions options,
               Diagnostics* diagnostics);
-  TableReader(const std::filesystem::path& file, TableOptions options, Diagnostics* diagnostics)
-      : TableReader(openFile(file), file.string(), std::move(options), diagnostics) {}
+  TableReader(const std::filesystem::path& file, const TableOptions& options, Diagnostics* diagnostics)
+      : TableReader(openFile(file), file.string(), options, diagnostics) {}
 
   bool hasHeader() const { return !columns_.empty(); }
   const std::vector<ColumnName>& columns() const { return columns_; }  ///< of the header

@@ -4,7 +4,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "lodeline/diagnostics.h"
@@ -36,7 +35,7 @@ class SummaryLines;
 /// Collects the statistics of a run frame by frame.
 class RunSummary {
  public:
-  explicit RunSummary(RunDescription description = {}) : description_(std::move(description)) {}
+  explicit RunSummary(const RunDescription& description = {}) : description_(description) {}
 
   void add(const FrameEstimate& estimate);
 

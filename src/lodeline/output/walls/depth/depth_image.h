@@ -22,7 +22,7 @@ struct DepthImage {
   double depth_m(int u, int v) const { return kDepthUnit_m * depth.at<uint16_t>(v, u); }
   double sigma_m(int u, int v) const { return kSigmaUnit_m * sigma.at<uint8_t>(v, u); }
   void set(int u, int v, double depth_m, double sigma_m) {
-    depth.at<uint16_t>(v, u) = static_cast<uint16_t>(depth_m / kDepthUnit_m + 0.5);
+    depth.at<uint16_t>(v, u) = cv::saturate_cast<uint16_t>(depth_m / kDepthUnit_m);
     sigma.at<uint8_t>(v, u) = cv::saturate_cast<uint8_t>(std::max(1.0, sigma_m / kSigmaUnit_m));
   }
   double share() const {

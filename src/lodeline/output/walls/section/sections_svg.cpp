@@ -87,8 +87,9 @@ std::string sectionsSvg(const DiveMap& map, const std::vector<StationWalls>& wal
       "<path class=\"bar\" d=\"M{0:.1f} 14v8h{1:.1f}v-8\"/><text x=\"{2:.1f}\" y=\"24\">{3:g} m</text>\n",
       width_px - 60.0 - bar_m * px_per_m, bar_m * px_per_m, width_px - 50.0, bar_m);
   for (size_t i = 0; i < walls.size(); ++i) {
-    const Vec2 corner(static_cast<double>(i % kColumns) * kPanel_px,
-                      kTitle_px + static_cast<double>(i / kColumns) * (kPanel_px + kCaption_px));
+    const size_t row = i / kColumns, column = i % kColumns;
+    const Vec2 corner(static_cast<double>(column) * kPanel_px,
+                      kTitle_px + static_cast<double>(row) * (kPanel_px + kCaption_px));
     text += panel(i, walls[i], px_per_m, corner);
   }
   return text + "</svg>\n";
