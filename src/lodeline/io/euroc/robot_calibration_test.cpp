@@ -12,16 +12,16 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr const char* kImu =
+constexpr const char* kImuSection =
     "imu0:\n  gyroscope_noise_density: 1.0e-4\n  gyroscope_random_walk: 1.0e-5\n"
     "  accelerometer_noise_density: 1.0e-3\n  accelerometer_random_walk: 1.0e-4\n";
-constexpr const char* kDvl =
+constexpr const char* kDvlSection =
     "dvl0:\n  T_BS: [1,0,0,0.1, 0,-1,0,0.2, 0,0,-1,0.3, 0,0,0,1]\n  velocity_noise_std: 0.02\n";
 
 class RobotCalibrationTest : public testing::Test {
  protected:
   RigFile read(const std::string& text) {
-    place_.write("rig.yaml", kImu + text);
+    place_.write("rig.yaml", kImuSection + text);
     return readRigFiles({place_.path("rig.yaml")}, &diagnostics_);
   }
   std::string refusal(const std::string& text) {
@@ -39,7 +39,7 @@ class RobotCalibrationTest : public testing::Test {
 
 TEST_F(RobotCalibrationTest, ReadsBeamsByTheirAngles) {
   const RigFile file =
-      read(std::string(kDvl) + "  beams: {angle_deg: 22.5, azimuths_deg: [45, 135, 225, 315]}\n");
+      read(std::string(kDvlSection) + "  beams: {angle_deg: 22.5, azimuths_deg: [45, 135, 225, 315]}\n");
   const std::vector<Vec3> expected = DvlCalibration().beams_D;
   ASSERT_EQ(file.rig.dvl->beams_D.size(), 4u);
   for (size_t i = 0; i < 4; ++i) EXPECT_LT((file.rig.dvl->beams_D[i] - expected[i]).norm(), 1e-15) << i;
@@ -48,7 +48,7 @@ TEST_F(RobotCalibrationTest, ReadsBeamsByTheirAngles) {
 
 TEST_F(RobotCalibrationTest, ASectionIsTheSameAfterWriting) {
   const RigFile file =
-      read(std::string(kDvl) +
+      read(std::string(kDvlSection) +
            "  topic: /dvl/data\n  range_noise_std: 0.04\n  beams: [[0.6, 0, 0.8], [-0.3, 0.52, 0.8], [-0.3, "
            "-0.52, 0.8]]\n"
            "  scale_sigma: 0\n  misalignment_sigma: 0.05\n  timeshift: -0.125\n  rate_hz: 8\n"
@@ -81,7 +81,7 @@ TEST_F(RobotCalibrationTest, ASectionIsTheSameAfterWriting) {
 }
 
 TEST_F(RobotCalibrationTest, NamesWhatIsWrong) {
-  const auto dvl = [&](const std::string& keys) { return refusal(std::string(kDvl) + keys); };
+  const auto dvl = [&](const std::string& keys) { return refusal(std::string(kDvlSection) + keys); };
   EXPECT_THAT(dvl("  beams: {angle_deg: 120, azimuths_deg: [0, 120, 240]}\n"), HasSubstr("between 0 and 90"));
   EXPECT_THAT(dvl("  beams: {angle_deg: 20, azimuths_deg: [0, 180]}\n"), HasSubstr("describes 2 beams"));
   EXPECT_THAT(dvl("  beams: {angle_deg: 20, azimuth_deg: [0, 120, 240]}\n"), HasSubstr("azimuths_deg"));
