@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct ReportArguments {
   std::vector<fs::path> runs;
   std::string reference;
   std::string align = "se3";
@@ -34,7 +34,7 @@ struct Arguments {
   Verbosity verbosity;
 };
 
-nlohmann::ordered_json backgroundOf(const Arguments& arguments) {
+nlohmann::ordered_json backgroundOf(const ReportArguments& arguments) {
   if (arguments.background.empty()) {
     if (arguments.background_at.empty()) return nullptr;
     throw UsageError("--background-at: --background names no file to be placed");
@@ -52,7 +52,7 @@ void printDone(const std::string& file, size_t bytes, size_t runs, const Verbosi
   fmt::print("{}: {:.1f} MB, {} run{}\n", file, 1e-6 * static_cast<double>(bytes), runs, runs > 1 ? "s" : "");
 }
 
-void reportCommand(const Arguments& arguments) {
+void reportCommand(const ReportArguments& arguments) {
   Diagnostics diagnostics;
   ReportOptions options;
   options.stations = runStationsJson;
@@ -82,7 +82,7 @@ void reportCommand(const Arguments& arguments) {
 
 void addReportCommand(CLI::App& program) {
   CLI::App* command = program.add_subcommand("report", "Show runs in one page for the browser");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ReportArguments>();
   command->add_option("RUN", arguments->runs, "output folders of `lodeline run`; several are compared")
       ->required();
   command->add_option("--reference", arguments->reference,
