@@ -1,10 +1,11 @@
 # Outside headers that most files include, parsed once for all files instead of once for each: a quarter of the time to
-# build everything. Files include what they use all the same; built without this (as with sanitizers), they prove it.
+# build everything. Files include what they use all the same; built without this (as for coverage), they prove it.
 option(LODELINE_PRECOMPILED_HEADERS "Parse the headers that most files include once for all" ON)
 
 set(precompiled_headers
     <algorithm> <array> <cmath> <filesystem> <fstream> <functional> <map> <memory> <optional> <random> <sstream>
-    <string> <vector> <Eigen/Cholesky> <Eigen/Geometry> <fmt/format.h> <opencv2/core.hpp>)
+    <string> <vector> <Eigen/Dense> <fmt/format.h> <opencv2/core.hpp>
+    ${CMAKE_SOURCE_DIR}/src/lodeline/util/build/decompositions.h)
 
 # lodeline_precompile(NAME HEADER... LINKS library... [FOR_PROGRAMS]): target lodeline_precompiled_NAME, which holds the
 # parsed headers and those named here. FOR_PROGRAMS: for programs and not for libraries, whose flags may differ.

@@ -1,0 +1,5 @@
+#include "lodeline/util/build/decompositions.h"
+
+namespace Eigen {
+LODELINE_DECOMPOSITIONS()
+}  // namespace Eigen
