@@ -87,8 +87,7 @@ coverage: test-dependencies
 # Three files are left out, because they include what only a build makes.
 tidy: test-dependencies
 	cmake --preset sanitized -B build/tidy -DLODELINE_SANITIZERS= -DLODELINE_BUILD_FUZZERS=OFF \
-	  -DLODELINE_PRECOMPILED_HEADERS=OFF \
-	  -DLODELINE_BUILD_TESTS=OFF
+	  -DLODELINE_PRECOMPILED_HEADERS=OFF -DLODELINE_BUILD_TESTS=OFF
 	run-clang-tidy-14 -quiet -j2 -p build/tidy '^$(CURDIR)/(?!.*(page_template|benchmark_set|build_info)).*\.(cpp|cxx)$$'
 
 # Loops and false loops in numbers that are too large for the tests; some minutes.

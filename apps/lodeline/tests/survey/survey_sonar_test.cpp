@@ -21,7 +21,7 @@ using test::runProgram;
 using ::testing::HasSubstr;
 
 constexpr double kRadius_m = 2.0;  // of the passage
-constexpr double kRate_hz = 20.0;
+constexpr double kSonarRate_hz = 20.0;
 
 /// Poses of a dive by its odometry, with straight motion between its keyframes.
 class Odometry {
@@ -60,8 +60,8 @@ class SurveySonarTest : public ::testing::Test {
     const Rigid3 elsewhere(Quat(Eigen::AngleAxisd(0.7, Vec3::UnitZ())), Vec3(30.0, -12.0, 4.0));
     std::string poses, echoes = "#timestamp [ns],range [m],angle [rad]\n";
     const Mat3 body_from_sonar = (Mat3() << 0, 0, 1, 1, 0, 0, 0, 1, 0).finished();
-    for (int i = 0; i < odometry.duration_s() * kRate_hz; ++i) {
-      const double time_s = i / kRate_hz, angle_rad = 0.4 * time_s * 2.0 * std::numbers::pi / 2.0;
+    for (int i = 0; i < odometry.duration_s() * kSonarRate_hz; ++i) {
+      const double time_s = i / kSonarRate_hz, angle_rad = 0.4 * time_s * 2.0 * std::numbers::pi / 2.0;
       Vec3 along;
       const Rigid3 pose = odometry.at(time_s, &along);
       const Time time = odometry.start() + Duration::fromSeconds(time_s);
