@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <type_traits>
 
 #include "lodeline/io/streams/stream_rate.h"
 
@@ -56,8 +57,14 @@ void LiveSource::put(Inbox<Reading>* inbox, Reading reading) {
   }
   inbox->waiting.push_back(std::move(reading));
   if (inbox->waiting.size() > inbox->limit) {
-    // Before the first image, dropped readings are not needed and not counted.
-    if (newest_image_) lose(inbox->waiting.front().time, &inbox->overflow);
+    // Before the first image is taken, other readings are not needed, and neither are images without inertial
+    // readings.
+    const Time time = inbox->waiting.front().time;
+    bool is_needed = newest_image_.has_value();
+    if constexpr (std::is_same_v<Reading, PendingImage>) {
+      is_needed |= !imu_.waiting.empty() && imu_.waiting.front().time <= time + inbox->offset_to_imu_clock;
+    }
+    if (is_needed) lose(time, &inbox->overflow);
     inbox->waiting.pop_front();
   }
   changed_.notify_all();
