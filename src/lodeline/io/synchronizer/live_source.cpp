@@ -57,14 +57,9 @@ void LiveSource::put(Inbox<Reading>* inbox, Reading reading) {
   }
   inbox->waiting.push_back(std::move(reading));
   if (inbox->waiting.size() > inbox->limit) {
-    // Before the first image is taken, other readings are not needed, and neither are images without inertial
-    // readings.
-    const Time time = inbox->waiting.front().time;
-    bool is_needed = newest_image_.has_value();
-    if constexpr (std::is_same_v<Reading, PendingImage>) {
-      is_needed |= !imu_.waiting.empty() && imu_.waiting.front().time <= time + inbox->offset_to_imu_clock;
-    }
-    if (is_needed) lose(time, &inbox->overflow);
+    // Before the first image is taken, other dropped readings are not needed and not counted.
+    constexpr bool kIsImage = std::is_same_v<Reading, PendingImage>;
+    if (kIsImage || newest_image_) lose(inbox->waiting.front().time, &inbox->overflow);
     inbox->waiting.pop_front();
   }
   changed_.notify_all();
@@ -152,7 +147,8 @@ void LiveSource::reportLosses(Inbox<Reading>* inbox) {
                                      loss->first.nanoseconds(), why));
     *loss = {};
   };
-  report("dropped", "found no room: the estimator does not keep up", &inbox->overflow);
+  report("dropped", "found no room: the estimator does not keep up, or waited for another sensor",
+         &inbox->overflow);
   report("late", "came after the poses that they belong to; is the clock of the sensor off?", &inbox->late);
 }
 
