@@ -111,7 +111,6 @@ bool RosSession::Content::run(const Publish& publish) {
 }
 
 void RosSession::Content::estimate(const Publish& publish) {
-  constexpr int kFramesBetweenFindings = 20;
   const double period_s = 1.0 / source_->rig().cameras.front().rate_hz;
   EstimatePublisher publisher(
       settings_.frames, settings_.publish_tf, serialization_,
@@ -123,8 +122,7 @@ void RosSession::Content::estimate(const Publish& publish) {
                       session_->mapFromOdom());
     const double work_s = std::chrono::duration<double>(Clock::now() - start).count();
     status_.add(session_->estimate(), work_s, period_s, source_->backlog());
-    if (session_->summary().frames() % kFramesBetweenFindings == 0)
-      status_.setFindings(diagnostics_.ranked());
+    status_.setFindings(diagnostics_.ranked());
   }
 }
 
