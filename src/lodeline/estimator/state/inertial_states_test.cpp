@@ -251,7 +251,7 @@ TEST(InertialStates, StayNearRightAxes) {
   const Outcome found = runWith({}, forGyroscope(0.001));
   ASSERT_TRUE(found.last.gyroscope_axes);
   EXPECT_LT(found.last.gyroscope_axes->cwiseAbs().maxCoeff(), 2e-3) << found.last.gyroscope_axes->transpose();
-  EXPECT_LT(drift_rad({}, forGyroscope(0.001), 8), 1.1 * drift_rad({}, forGyroscope(0.0), 8));
+  EXPECT_LT(drift_rad({}, forGyroscope(0.001), 24), 1.1 * drift_rad({}, forGyroscope(0.0), 24));
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ TEST(Consistency, OneCameraInTheDarkNoticesThatItRests) {
   options.scene.points.frame_rate_hz = 10.0;
   options.scene.points.longest_track_s = 100.0;
   options.estimator = honestOptions(options.scene);
-  options.seeds = 6;
+  options.seeds = 12;
   options.times_s = {kLight_s + 3.0, kOn_s + 2.0};
   const Consistency consistency = measureConsistency(options);
   EXPECT_EQ(consistency.lost, 0);
