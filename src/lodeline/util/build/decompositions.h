@@ -1,5 +1,5 @@
 /// Declares the decompositions of Eigen that many files use. decompositions.cpp compiles them once. Without
-/// this header every file compiles them again, which takes the compiler up to eight seconds for each one. The
+/// this header every file compiles them again, which takes GCC up to 12 s for each one. The
 /// precompiled headers include it. A build without these gives the same program.
 #pragma once
 #include <Eigen/Cholesky>
