@@ -78,8 +78,8 @@ uint64_t contentKey(const CurrentSample& sample);
 /// One sensor's readings with strictly increasing stamps on the IMU's clock. Late readings within the
 /// look-ahead are sorted in; duplicates and later readings are dropped. Where the clock was set back, the
 /// following readings continue without a pause. Readings in bursts are spread evenly. All this, and gaps, are
-/// reported with stamps. Memory holds two readings, and the look-ahead where it is needed. Throws InputError
-/// where the stream runs backwards.
+/// reported with stamps. Memory holds two readings, and the look-ahead where it is needed. A live stream
+/// gives a reading at once after a step of a usual length. Throws InputError where the stream runs backwards.
 template <typename Reading>
 class OrderedStream {
  public:
@@ -222,11 +222,20 @@ class OrderedStream {
 
   /// Reads in advance until the front is certain to be the next reading.
   void fill() {
-    while (ahead_.size() < 2 && take()) {
+    while (ahead_.size() < 2 && !isCertainAlone() && take()) {
     }
     if (ahead_.empty() || !monitor_.isHole(ahead_.front().time)) return;
     while (ahead_.size() <= monitor_.expectation().look_ahead && take()) {
     }
+  }
+
+  /// Whether the only reading is certain to be the next one: a step of a usual length, so that no reading is
+  /// missing before it and its stamp is not wild. Only for a live sensor; others have their successors at
+  /// hand.
+  bool isCertainAlone() const {
+    if (monitor_.expectation().look_ahead > 1 || ahead_.size() != 1 || !monitor_.last()) return false;
+    const Time time = ahead_.front().time;
+    return !monitor_.isHole(time) && span(time, *monitor_.last()) <= kWildLeap;
   }
 
   /// Reads one more reading and sorts it in; returns false at the end.
@@ -249,7 +258,6 @@ class OrderedStream {
   /// `time` did not. Their stamps are damaged; without this, all later readings would be rejected as late.
   bool dropWildStamps(Time time) {
     constexpr size_t kMostWild = 3;
-    constexpr Duration kWildLeap = Duration::fromNanoseconds(1'000'000'000);
     const auto first = std::find_if(ahead_.begin() + (is_ready_ ? 1 : 0), ahead_.end(),
                                     [&](const Reading& reading) { return reading.time >= time; });
     const auto count = static_cast<size_t>(ahead_.end() - first);
@@ -349,6 +357,7 @@ class OrderedStream {
     Duration by;
   };
   static constexpr size_t kRecent = 1000;
+  static constexpr Duration kWildLeap = Duration::fromNanoseconds(1'000'000'000);
 
   Pull pull_;
   StampMonitor monitor_;

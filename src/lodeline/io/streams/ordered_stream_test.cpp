@@ -27,7 +27,7 @@ class OrderedStreamTest : public testing::Test {
   }
 
   OrderedStream<DepthSample> streamOf(const std::vector<int64_t>& stamps_ms, double offset_s, bool repeats) {
-    StreamExpectation expected{"depth", "the sensor", 100.0, 0.04, Duration::fromSeconds(offset_s)};
+    StreamExpectation expected{"depth", "the sensor", 100.0, 0.04, Duration::fromSeconds(offset_s), look_ahead_};
     pulled_ = 0;
     const auto pull = [this, stamps_ms, repeats]() -> std::optional<DepthSample> {
       if (pulled_ == stamps_ms.size()) return std::nullopt;
@@ -38,7 +38,7 @@ class OrderedStreamTest : public testing::Test {
     return {expected, pull, &diagnostics_};
   }
 
-  size_t pulled_ = 0;
+  size_t pulled_ = 0, look_ahead_ = StreamExpectation().look_ahead;
   Diagnostics diagnostics_;
 };
 
@@ -134,6 +134,22 @@ TEST_F(OrderedStreamTest, ReadsAheadOnlyWhereReadingsAreMissing) {
     stream.pop();
     EXPECT_LE(pulled_, i + 2);
   }
+}
+
+TEST_F(OrderedStreamTest, ALiveSensorIsReadAheadOnlyWhereReadingsAreMissing) {
+  look_ahead_ = 1;
+  auto stream = streamOf({10, 20, 30, 60, 70, 80}, 0.0, false);
+  for (const size_t pulled : {2, 2, 3, 5, 5, 6}) {
+    ASSERT_NE(stream.peek(), nullptr);
+    stream.pop();
+    EXPECT_EQ(pulled_, pulled);
+  }
+  EXPECT_EQ(stream.peek(), nullptr);
+}
+
+TEST_F(OrderedStreamTest, ALiveSensorMayHaveLateReadingsAndWildStamps) {
+  look_ahead_ = 1;
+  EXPECT_THAT(filter({10, 20, 40, 30, 50, 999'000, 60, 70}), ElementsAre(10, 20, 30, 40, 50, 60, 70));
 }
 
 TEST_F(OrderedStreamTest, OneWildStampDoesNotSilenceTheRest) {

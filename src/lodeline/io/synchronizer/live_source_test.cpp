@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <future>
 #include <opencv2/core.hpp>
 #include <thread>
 
@@ -142,6 +144,40 @@ TEST_F(LiveSourceTest, DropsAndReportsWhatComesTooLate) {
   EXPECT_EQ(timesOf(packet.readings.of<MagnetometerSample>()), std::vector<Time>{at(0.52)});
   EXPECT_EQ(diagnostics_.count("magnetometer_late"), 1);
   EXPECT_EQ(diagnostics_.count("image_late"), 1);
+}
+
+// The images of both cameras are pushed one after the other, in both orders of their stamps.
+TEST_F(LiveSourceTest, GivesAPairWithoutWaitingForTheNextOne) {
+  for (const double later_s : {-0.004, 0.0, 0.004}) {
+    start(2, false);
+    for (const double time_s : {0.5, 0.55}) {
+      pushImage(0, time_s);
+      pushImage(1, time_s + later_s);
+    }
+    pushImu(0.0, 0.57);
+    EXPECT_EQ(next().time, at(0.5));
+    std::future<FramePacket> second = std::async(std::launch::async, [this] { return next(); });
+    EXPECT_EQ(second.wait_for(std::chrono::seconds(10)), std::future_status::ready);
+    source_->close();  // ends the waiting of a packet that did not come
+    const FramePacket packet = second.get();
+    EXPECT_EQ(packet.time, at(0.55));
+    EXPECT_FALSE(packet.images[1].empty());
+  }
+  EXPECT_TRUE(diagnostics_.ranked().empty());
+}
+
+TEST_F(LiveSourceTest, WaitsForAnImageLongerThanForOtherSensors) {
+  start(1, false);
+  for (const double time_s : {0.5, 0.55}) pushImage(0, time_s);
+  pushImu(0.0, 0.8);
+  next();
+  next();
+  std::future<FramePacket> third = std::async(std::launch::async, [this] { return next(); });
+  EXPECT_EQ(third.wait_for(std::chrono::milliseconds(50)), std::future_status::timeout);
+  pushImage(0, 0.75);
+  pushImage(0, 0.8);
+  pushImu(0.8, 0.9);
+  EXPECT_EQ(third.get().time, at(0.75));
 }
 
 TEST_F(LiveSourceTest, PassesTheEchoesOfASonar) {

@@ -9,6 +9,15 @@
 #include "lodeline/util/median.h"
 
 namespace lodeline {
+namespace {
+
+/// Whether another image of the first camera comes; waits for it. A live source that gave an image may end
+/// once before the next one, when this one is late.
+bool hasNext(OrderedStream<PendingImage>* images, bool is_live) {
+  return images->peek() != nullptr || (is_live && images->peek() != nullptr);
+}
+
+}  // namespace
 
 Synchronizer::Synchronizer(MeasurementSource* source, const SynchronizerOptions& options,
                            Diagnostics* diagnostics)
@@ -97,7 +106,7 @@ std::optional<FramePacket> Synchronizer::nextOfImage() {
 }
 
 std::optional<Synchronizer::Draft> Synchronizer::draftNext() {
-  while (cameras_[0].peek() != nullptr) {
+  while (hasNext(&cameras_[0], source_->isLive())) {
     Draft draft;
     PendingImage reference = cameras_[0].pop();
     if (!first_image_time_) first_image_time_ = reference.time;
@@ -165,6 +174,10 @@ std::optional<PendingImage> Synchronizer::partnerOf(const PendingImage& referenc
     return image.time < reference.time ? reference.time - image.time : image.time - reference.time;
   };
   while (stream.peek() != nullptr) {
+    // A live stream may not have its next image yet. It cannot be nearer to the reference than one just
+    // before it.
+    bool ends = false;
+    if ((reference.time - stream.peek()->time).seconds() > 0.25 * period_s) stream.reach(2, &ends);
     const bool is_next_nearer =
         stream.following() != nullptr && distance(*stream.following()) <= distance(*stream.peek());
     if (stream.peek()->time >= reference.time - tolerance && !is_next_nearer) break;
