@@ -98,9 +98,10 @@ std::string HelpFormatter::make_usage(const CLI::App* command, std::string name)
     if (option->get_positional()) {
       const std::string positional = option->get_name(true, false);
       const std::string more = option->get_items_expected_max() > 1 ? " ..." : "";
-      text += option->get_required() ? " " + positional + more : fmt::format(" [{}{}]", positional, more);
+      text += option->get_required() ? fmt::format(" {}{}", positional, more)
+                                     : fmt::format(" [{}{}]", positional, more);
     } else if (option->get_required()) {
-      text += " " + option->get_name(false, false) + " " + typeOf(*option);
+      text += fmt::format(" {} {}", option->get_name(false, false), typeOf(*option));
     }
   }
   if (!command->get_subcommands({}).empty()) text += " COMMAND";

@@ -74,14 +74,13 @@ std::vector<std::string> withHelpAsOption(std::vector<std::string> words) {
 std::vector<std::string> withJoinedPlaces(const std::vector<std::string>& words) {
   std::vector<std::string> joined;
   for (size_t i = 0; i < words.size();) {
-    const std::string word = words[i++];
+    const std::string& word = words[i++];
     const size_t equals = word.find('=');
     const std::string name = word.substr(0, equals);
-    if (name != "--site" && name != "--entrance" && name != "--background-at") {
-      joined.push_back(word);
-    } else if (equals != std::string::npos) {
+    const bool takes_place = name == "--site" || name == "--entrance" || name == "--background-at";
+    if (takes_place && equals != std::string::npos) {
       joined.push_back(name + "=" + placeFrom(word.substr(equals + 1), words, &i));
-    } else if (i < words.size() && areNumbers(words[i])) {
+    } else if (takes_place && i < words.size() && areNumbers(words[i])) {
       const size_t value = i++;
       // With an equals sign a negative latitude does not look like an option.
       joined.push_back(name + "=" + placeFrom(words[value], words, &i));
