@@ -57,7 +57,8 @@ Duration StampMonitor::period() const {
 }
 
 bool StampMonitor::isHole(Time time) const {
-  return last_ && span(time, *last_).seconds() > kHolePeriods * period().seconds();
+  if (expectation_.look_ahead == 0 || !last_) return false;
+  return span(time, *last_).seconds() > kHolePeriods * period().seconds();
 }
 
 void StampMonitor::accept(Time time) {

@@ -26,7 +26,7 @@ struct StreamExpectation {
   double max_gap_s = 0.0;        ///< a longer pause is reported
   Duration offset_to_imu_clock;  ///< added to every stamp
   /// Number of readings read in advance where some are missing or time goes backwards, to sort in late ones.
-  /// 1 for a live sensor, where reading in advance would mean waiting.
+  /// 1 for a live sensor, where reading in advance would mean waiting; 0 for a live camera.
   size_t look_ahead = 32;
   /// Whether readings that arrive in bursts get evenly spread times.
   bool spreads_bursts = false;

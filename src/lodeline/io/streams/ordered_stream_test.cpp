@@ -27,7 +27,8 @@ class OrderedStreamTest : public testing::Test {
   }
 
   OrderedStream<DepthSample> streamOf(const std::vector<int64_t>& stamps_ms, double offset_s, bool repeats) {
-    StreamExpectation expected{"depth", "the sensor", 100.0, 0.04, Duration::fromSeconds(offset_s), look_ahead_};
+    StreamExpectation expected{"depth",    "the sensor", 100.0, 0.04, Duration::fromSeconds(offset_s),
+                               look_ahead_};
     pulled_ = 0;
     const auto pull = [this, stamps_ms, repeats]() -> std::optional<DepthSample> {
       if (pulled_ == stamps_ms.size()) return std::nullopt;
@@ -145,6 +146,18 @@ TEST_F(OrderedStreamTest, ALiveSensorIsReadAheadOnlyWhereReadingsAreMissing) {
     EXPECT_EQ(pulled_, pulled);
   }
   EXPECT_EQ(stream.peek(), nullptr);
+}
+
+TEST_F(OrderedStreamTest, ALiveCameraIsNotReadAhead) {
+  look_ahead_ = 0;
+  auto stream = streamOf({10, 20, 60, 70, 50, 80}, 0.0, false);
+  for (const size_t pulled : {2, 2, 3, 4, 6}) {
+    ASSERT_NE(stream.peek(), nullptr);
+    stream.pop();
+    EXPECT_EQ(pulled_, pulled);
+  }
+  EXPECT_EQ(stream.peek(), nullptr);
+  EXPECT_EQ(diagnostics_.count("depth_disorder"), 1);
 }
 
 TEST_F(OrderedStreamTest, ALiveSensorMayHaveLateReadingsAndWildStamps) {

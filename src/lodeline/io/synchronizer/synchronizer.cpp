@@ -45,7 +45,8 @@ OrderedStream<PendingImage> Synchronizer::imageStream(size_t camera) {
   const double found_s = camera < options_.image_offset_s.size() ? options_.image_offset_s[camera] : 0.0;
   expected.offset_to_imu_clock = Duration::fromSeconds(calibration.time_offset_to_imu_s + found_s);
   expected.spreads_bursts = false;
-  expected.look_ahead = std::min(expected.look_ahead, kImagesAhead);
+  // Where an image of a live camera is lost, the next one does not wait for its successor.
+  expected.look_ahead = source_->isLive() ? 0 : std::min(expected.look_ahead, kImagesAhead);
   // A gap of another camera is reported per packet as a missing partner.
   expected.max_gap_s = camera == 0 ? options_.max_image_gap_periods / calibration.rate_hz : 0.0;
   const auto pull = [this, camera] {
