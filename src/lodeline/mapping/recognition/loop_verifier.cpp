@@ -4,7 +4,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <set>
 
 #include "lodeline/geometry/so3.h"
 #include "lodeline/mapping/recognition/verification/descriptor_matcher.h"
@@ -52,64 +51,22 @@ class Verification {
     if (!loop_.reason.empty()) return loop_;
     describePose();
     loop_.reason = objection();
-    if (isTooLittle() && takeSimilarFeatures()) {
-      Loop distinct = loop_;
-      describePose();
-      loop_.reason = objection();
-      if (!loop_.reason.empty()) loop_ = std::move(distinct);
-    }
     if (loop_.reason.empty()) loop_.status = LoopStatus::Verified;
     return loop_;
   }
 
  private:
-  void setPairs(const std::vector<DescriptorMatch>& matches) {
-    pairs_.clear();
-    searched_rad_.clear();
+  /// Matches and the best pose; returns the reason where there is none.
+  std::string findPose() {
+    const auto matches =
+        matchDescriptors(old_, new_, search_ == Search::ByPrediction ? prediction_ : std::nullopt);
+    loop_.matches = static_cast<int>(matches.size());
     for (const DescriptorMatch& match : matches) {
       const auto pair = correspondenceOf(old_, new_, match.features);
       if (!pair) continue;
       pairs_.push_back(*pair);
       searched_rad_.push_back(match.searched_rad);
     }
-  }
-
-  /// Replaces the distinct matches by all pairs of similar features, and the inliers by those that the pose
-  /// explains, one for each feature. Whether the pose then remains determined.
-  bool takeSimilarFeatures() {
-    setPairs(similarFeatures(old_, new_, search_ == Search::ByPrediction ? prediction_ : std::nullopt));
-    constexpr int kRounds = 3, kIterations = 20;
-    for (int round = 0; round <= kRounds; ++round) {
-      consensus_ = consensusAt(pairs_, std::vector<bool>(pairs_.size(), true), pose_.old_from_new);
-      keepOneOfEachFeature();
-      if (round < kRounds)
-        pose_ = refinePose(pairs_, consensus_.is_inlier, vertical_, pose_.old_from_new, kIterations);
-    }
-    return pose_.is_determined;
-  }
-
-  /// Of the inliers with one feature, leaves the most similar. Pairs are in this order.
-  void keepOneOfEachFeature() {
-    std::set<int> old_features, new_features;
-    consensus_.inliers = 0;
-    for (size_t i = 0; i < pairs_.size(); ++i) {
-      const FeatureMatch& match = pairs_[i].match;
-      if (!consensus_.is_inlier[i]) continue;
-      consensus_.is_inlier[i] =
-          old_features.count(match.old_feature) + new_features.count(match.new_feature) == 0;
-      if (!consensus_.is_inlier[i]) continue;
-      old_features.insert(match.old_feature);
-      new_features.insert(match.new_feature);
-      ++consensus_.inliers;
-    }
-  }
-
-  /// Matches and the best pose; returns the reason where there is none.
-  std::string findPose() {
-    const auto matches =
-        matchDescriptors(old_, new_, search_ == Search::ByPrediction ? prediction_ : std::nullopt);
-    loop_.matches = static_cast<int>(matches.size());
-    setPairs(matches);
     if (static_cast<int>(pairs_.size()) < kLeastMatches) {
       return fmt::format("{} descriptors agree, {} of them on points with a position; at least {} are needed",
                          matches.size(), pairs_.size(), kLeastMatches);
@@ -123,6 +80,8 @@ class Verification {
       pose_ = refinePose(pairs_, consensus_.is_inlier, vertical_, consensus_.old_from_new, kIterations);
       consensus_ = consensusAt(pairs_, std::vector<bool>(pairs_.size(), true), pose_.old_from_new);
     }
+    loop_.inliers = consensus_.inliers;
+    loop_.old_from_new = pose_.old_from_new;
     return pose_.is_determined ? "" : "the matches do not determine all coordinates of the pose";
   }
 
@@ -131,9 +90,6 @@ class Verification {
     double squared = 0.0, rows = 0.0;
     std::vector<double> distances_m;
     std::vector<int> groups;
-    loop_.inliers = consensus_.inliers;
-    loop_.old_from_new = pose_.old_from_new;
-    loop_.inlier_matches.clear();
     for (size_t i = 0; i < pairs_.size(); ++i) {
       groups.push_back(old_view_.cellOf(pairs_[i].match.old_feature));
       if (!consensus_.is_inlier[i]) continue;
@@ -159,9 +115,6 @@ class Verification {
     loop_.covariance.diagonal().tail<3>().array() += common_rad2;
   }
 
-  /// Whether more inliers could remove the objection.
-  bool isTooLittle() { return !byChance().empty() || !byCover().empty() || !byWeakness().empty(); }
-
   /// Why the pose is not believed; empty where it is.
   std::string objection() {
     for (const auto check :
@@ -174,8 +127,8 @@ class Verification {
   }
 
   std::string byChance() {
-    // All searches, by distinct matches and by similar features, together may let pass so many.
-    const double most = (prediction_ ? 0.25 : 0.5) * options_.max_false_alarms;
+    // Both searches together may let pass so many.
+    const double most = prediction_ ? 0.5 * options_.max_false_alarms : options_.max_false_alarms;
     if (evidence_.log10_false_alarms <= std::log10(most)) return "";
     return fmt::format(
         "chance explains {} inliers of {} matches in {} cells: 1e{:.1f} such poses are expected",

@@ -111,34 +111,6 @@ cv::Mat restrict(const MapKeyframe& old_keyframe, const MapKeyframe& new_keyfram
   return reaches;
 }
 
-/// Bits that differ between each old and each new feature.
-struct DescriptorDistances {
-  cv::Mat bits;     ///< kOutOfReach where the prediction excludes a pair
-  cv::Mat reaches;  ///< half the angle of each pair's cone, rad; empty where the whole view is searched
-
-  DescriptorDistances(const MapKeyframe& old_keyframe, const MapKeyframe& new_keyframe,
-                      const std::optional<LoopPrediction>& prediction) {
-    constexpr double kFarScene_m = 10.0;
-    cv::batchDistance(matrixOf(old_keyframe), matrixOf(new_keyframe), bits, CV_32S, cv::noArray(),
-                      cv::NORM_HAMMING);
-    if (!prediction) return;
-    const SearchCone cone(*prediction);
-    if (cone.isNarrow(kFarScene_m)) reaches = restrict(old_keyframe, new_keyframe, cone, &bits);
-  }
-
-  DescriptorMatch match(int i, int j) const {
-    const double searched_rad =
-        reaches.empty() ? std::numbers::pi : static_cast<double>(reaches.at<float>(i, j));
-    return {{i, j}, bits.at<int>(i, j), searched_rad};
-  }
-};
-
-void sortByDistance(std::vector<DescriptorMatch>* matches) {
-  std::stable_sort(matches->begin(), matches->end(), [](const DescriptorMatch& a, const DescriptorMatch& b) {
-    return a.distance < b.distance;
-  });
-}
-
 /// Index of the smallest element; the first one of equals.
 int nearest(int count, const auto& distance) {
   int best = 0;
@@ -188,8 +160,15 @@ std::vector<DescriptorMatch> matchDescriptors(const MapKeyframe& old_keyframe,
                                               const MapKeyframe& new_keyframe,
                                               const std::optional<LoopPrediction>& prediction) {
   if (old_keyframe.features.empty() || new_keyframe.features.empty()) return {};
-  const DescriptorDistances compared(old_keyframe, new_keyframe, prediction);
-  const cv::Mat& distances = compared.bits;
+  cv::Mat distances;
+  cv::batchDistance(matrixOf(old_keyframe), matrixOf(new_keyframe), distances, CV_32S, cv::noArray(),
+                    cv::NORM_HAMMING);
+  cv::Mat reaches;
+  if (prediction) {
+    constexpr double kFarScene_m = 10.0;
+    const SearchCone cone(*prediction);
+    if (cone.isNarrow(kFarScene_m)) reaches = restrict(old_keyframe, new_keyframe, cone, &distances);
+  }
   std::vector<int> nearest_old;
   for (int j = 0; j < distances.cols; ++j)
     nearest_old.push_back(nearest(distances.rows, [&](int i) { return distances.at<int>(i, j); }));
@@ -204,24 +183,15 @@ std::vector<DescriptorMatch> matchDescriptors(const MapKeyframe& old_keyframe,
         !isDistinct(i, distances.rows, to_old, old_keyframe.features)) {
       continue;
     }
-    matches.push_back(compared.match(i, j));
+    const double searched_rad =
+        reaches.empty() ? std::numbers::pi : static_cast<double>(reaches.at<float>(i, j));
+    matches.push_back({{i, j}, to_new(j), searched_rad});
   }
-  sortByDistance(&matches);
+  std::stable_sort(matches.begin(), matches.end(), [](const DescriptorMatch& a, const DescriptorMatch& b) {
+    return a.distance < b.distance;
+  });
   keepOneOfEachTrack(old_keyframe, new_keyframe, &matches);
   return matches;
-}
-
-std::vector<DescriptorMatch> similarFeatures(const MapKeyframe& old_keyframe, const MapKeyframe& new_keyframe,
-                                             const std::optional<LoopPrediction>& prediction) {
-  if (old_keyframe.features.empty() || new_keyframe.features.empty()) return {};
-  const DescriptorDistances compared(old_keyframe, new_keyframe, prediction);
-  std::vector<DescriptorMatch> similar;
-  for (int i = 0; i < compared.bits.rows; ++i) {
-    for (int j = 0; j < compared.bits.cols; ++j)
-      if (compared.bits.at<int>(i, j) <= kMostBits) similar.push_back(compared.match(i, j));
-  }
-  sortByDistance(&similar);
-  return similar;
 }
 
 }  // namespace lodeline

@@ -24,9 +24,4 @@ std::vector<DescriptorMatch> matchDescriptors(const MapKeyframe& old_keyframe,
                                               const MapKeyframe& new_keyframe,
                                               const std::optional<LoopPrediction>& prediction);
 
-/// All pairs of features whose descriptors differ in as few bits as those of one point may, nearest first. A
-/// prediction restricts them in the same way.
-std::vector<DescriptorMatch> similarFeatures(const MapKeyframe& old_keyframe, const MapKeyframe& new_keyframe,
-                                             const std::optional<LoopPrediction>& prediction);
-
 }  // namespace lodeline
