@@ -16,7 +16,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 MOST_FILES, MOST_LINES = 30, 400
-TOPS = ("include", "src", "apps", "studies", "ros", "ros2", "python", "examples", "fuzz")
+TOPS = ("include", "src", "apps", "studies", "ros", "ros2", "python", "examples", "fuzz", "web/src")
 PUBLIC = "include/lodeline"
 MOST_PUBLIC_HEADERS = 12
 # The folder as part of which each public header counts.

@@ -1,17 +1,17 @@
 // The page while a run goes on: what the program tells over server-sent events, shown as it comes.
 
-import { decodeFloats, type PageData, type Run, type RunMap } from "./data";
-import { append, element, section, toggle } from "./dom";
-import { headingDial } from "./heading_dial";
-import { number } from "./format";
-import { kPlots } from "./plots";
-import { plotCard } from "./plot";
-import { statusCard } from "./status_strip";
-import type { Vec3 } from "./geometry";
-import { appendPose, makeTracks, refill, type Track } from "./track";
+import { decodeFloats, type PageData, type Run, type RunMap } from "./model/data";
+import { append, element, section, toggle } from "./base/dom";
+import { headingDial } from "./plots/heading_dial";
+import { number } from "./base/format";
+import { kPlots } from "./plots/plots";
+import { plotCard } from "./plots/plot";
+import { statusCard } from "./plots/status_strip";
+import type { Vec3 } from "./base/geometry";
+import { appendPose, makeTracks, refill, type Track } from "./model/track";
 import { trajectorySection } from "./trajectory_section";
-import { View } from "./view";
-import { turnNumbers, turnPoints, turnRows } from "./world_turn";
+import { View } from "./model/view";
+import { turnNumbers, turnPoints, turnRows } from "./model/world_turn";
 
 /// The pose in the map, and the turn of the odometry's world in it about the vertical.
 interface MapPose {

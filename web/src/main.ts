@@ -1,10 +1,10 @@
-import { setPrinting } from "./colours";
-import { kDrawAll } from "./dom";
-import { readPageData } from "./data";
+import { setPrinting } from "./base/colours";
+import { kDrawAll } from "./base/dom";
+import { readPageData } from "./model/data";
 import { startLive } from "./live";
 import { assemble } from "./page";
-import { makeTracks } from "./track";
-import { View } from "./view";
+import { makeTracks } from "./model/track";
+import { View } from "./model/view";
 
 // Paper is light; this has to come before all that draws for it.
 window.addEventListener("beforeprint", () => setPrinting(true));

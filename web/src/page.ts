@@ -1,18 +1,18 @@
 // Puts the parts of the page together.
 
-import { append, button, element, section } from "./dom";
-import { fileName } from "./download";
-import { findingsList, summaryTiles } from "./summary";
-import { kComparisonPlots } from "./comparison_plots";
-import { mapSection } from "./map_section";
-import { kMagnetometerPlots, kPlots } from "./plots";
-import { plotCard } from "./plot";
-import { sphereCard } from "./sphere_view";
-import { statusCard } from "./status_strip";
-import { comparisonTable, evaluationTable } from "./tables";
+import { append, button, element, section } from "./base/dom";
+import { fileName } from "./base/download";
+import { findingsList, summaryTiles } from "./panels/summary";
+import { kComparisonPlots } from "./plots/comparison_plots";
+import { mapSection } from "./panels/map_section";
+import { kMagnetometerPlots, kPlots } from "./plots/plots";
+import { plotCard } from "./plots/plot";
+import { sphereCard } from "./plots/sphere_view";
+import { statusCard } from "./plots/status_strip";
+import { comparisonTable, evaluationTable } from "./panels/tables";
 import { trajectorySection } from "./trajectory_section";
-import type { Run } from "./data";
-import type { View } from "./view";
+import type { Run } from "./model/data";
+import type { View } from "./model/view";
 
 const kSources = {
   run: "causal trajectory (trajectory.tum)", refined: "refined trajectory (trajectory_refined.tum)",

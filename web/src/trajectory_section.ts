@@ -1,20 +1,20 @@
 // The trajectory in space and on maps, with what can be chosen about it.
 
-import { available, colourScale } from "./colouring";
-import { gradient, kLoopColour, kMapColour, whenThemeChanges } from "./colours";
-import type { RunMap } from "./data";
-import { button, choice, element, section, toggle, whenNear } from "./dom";
-import { fileName, saveCsv, savePng } from "./download";
-import { shownPoints } from "./map_points";
-import { MapView } from "./map_view";
-import { pointColours, type PointColouring } from "./points";
-import { posePanel } from "./pose_panel";
-import type { ProjectionName } from "./projections";
-import { sectionsCard } from "./sections_view";
-import { SpaceView } from "./space_view";
-import type { Kind, Track } from "./track";
-import { printable, vectorButton, type VectorDrawing } from "./vector";
-import type { Shown, View } from "./view";
+import { available, colourScale } from "./model/colouring";
+import { gradient, kLoopColour, kMapColour, whenThemeChanges } from "./base/colours";
+import type { RunMap } from "./model/data";
+import { button, choice, element, section, toggle, whenNear } from "./base/dom";
+import { fileName, saveCsv, savePng } from "./base/download";
+import { shownPoints } from "./model/map_points";
+import { MapView } from "./plan/map_view";
+import { pointColours, type PointColouring } from "./model/points";
+import { posePanel } from "./panels/pose_panel";
+import type { ProjectionName } from "./model/projections";
+import { sectionsCard } from "./plan/sections_view";
+import { SpaceView } from "./space/space_view";
+import type { Kind, Track } from "./model/track";
+import { printable, vectorButton, type VectorDrawing } from "./base/vector";
+import type { Shown, View } from "./model/view";
 
 /// What the colours of something mean; hidden while they mean nothing.
 function colourBar(view: View, scaleOf: () => { title: string; low: string; high: string } | null): HTMLElement {
