@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -40,17 +41,37 @@ class TemporaryMap {
   std::optional<MapFile> file_;
 };
 
-/// Keyframes of a new dive that see what a keyframe of the map sees.
-std::set<KeyframeId> redundantKeyframes(const std::vector<Loop>& ledger, const KnownKeyframes& known,
-                                        int dive, const MapMergeOptions& options) {
-  std::set<KeyframeId> redundant;
-  for (const Loop& loop : ledger) {
-    if (loop.status != LoopStatus::Accepted || isTagTie(loop)) continue;
-    if (known.at(loop.old_keyframe).dive == dive) continue;
-    const double turn_rad = Quat::Identity().angularDistance(loop.old_from_new.rotation);
-    if (loop.old_from_new.translation.norm() < options.redundant_distance_m &&
-        turn_rad < options.redundant_turn_rad)
-      redundant.insert(loop.new_keyframe);
+/// Keyframes of a map that have features.
+void addDescribed(const MapFile& map, std::set<KeyframeId>* described) {
+  for (const MapDive& dive : map.dives()) {
+    map.forEachKeyframe(dive.id, [&](const StoredKeyframe& row) {
+      if (row.feature_count > 0) described->insert(row.keyframe.id);
+    });
+  }
+}
+
+/// Keyframes of a new dive that recognized a place and see what an earlier keyframe sees, one that keeps its
+/// features: a keyframe of the map, or of the same dive when it was there before. `described`: the keyframes
+/// with features.
+std::set<KeyframeId> redundantKeyframes(const DiveMapping& mapping, const std::set<KeyframeId>& described,
+                                        const MapMergeOptions& options) {
+  std::set<KeyframeId> recognized, redundant;
+  for (const Loop& loop : mapping.ledger()) {
+    if (loop.status == LoopStatus::Accepted && !isTagTie(loop)) recognized.insert(loop.new_keyframe);
+  }
+  const double least_path_m = options.mapping.candidates.least_path_m;
+  for (const KeyframeId id : recognized) {
+    const KnownKeyframe& keyframe = mapping.known().at(id);
+    const auto seesTheSame = [&](const KnownKeyframe& earlier) {
+      if (earlier.id >= id || described.count(earlier.id) == 0 || redundant.count(earlier.id) > 0)
+        return false;
+      if (earlier.dive == keyframe.dive && keyframe.path_m - earlier.path_m < least_path_m) return false;
+      const Rigid3 earlier_from_new = earlier.map_from_body.inverse() * keyframe.map_from_body;
+      return earlier_from_new.translation.norm() < options.redundant_distance_m &&
+             Quat::Identity().angularDistance(earlier_from_new.rotation) < options.redundant_turn_rad;
+    };
+    const std::vector<KnownKeyframe>& all = mapping.known().all();
+    if (std::any_of(all.begin(), all.end(), seesTheSame)) redundant.insert(id);
   }
   return redundant;
 }
@@ -142,8 +163,10 @@ MergedDive mergeDive(MapFile* map, const MapFile& run, const MapMergeOptions& op
   merged.name = dive.name;
   merged.summary = mapping.finish(dive.end.value_or(dive.start));
   merged.ledger = mapping.ledger();
-  const std::set<KeyframeId> redundant =
-      redundantKeyframes(merged.ledger, mapping.known(), mapping.dive(), options);
+  std::set<KeyframeId> described;
+  addDescribed(*map, &described);
+  addDescribed(temporary.file(), &described);
+  const std::set<KeyframeId> redundant = redundantKeyframes(mapping, described, options);
   merged.without_features = static_cast<int>(redundant.size());
 
   const MapFile& source = temporary.file();

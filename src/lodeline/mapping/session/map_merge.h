@@ -12,10 +12,12 @@ namespace lodeline {
 
 struct MapMergeOptions {
   MappingOptions mapping;
-  /// Features of a keyframe are left out where the map has a keyframe that sees the same: nearer than this,
-  /// m, and turned by less than `redundant_turn_rad`. The map then grows with the cave, not with the dives.
-  double redundant_distance_m = 0.5;
-  double redundant_turn_rad = 0.26;
+  /// Features of a keyframe are left out where an earlier keyframe of the map or of the dive sees the same:
+  /// nearer than this, m, and turned by less than `redundant_turn_rad`. These are half of the limits within
+  /// which candidates for loops are looked for. So what would find the keyframe finds the earlier one. The
+  /// map then grows with the passage, not with the number of visits.
+  double redundant_distance_m = 0.75;
+  double redundant_turn_rad = 0.35;
   /// Takes the share of the run's keyframes that have been looked for.
   ShareDone progress = [](double) {};
 };
@@ -24,7 +26,7 @@ struct MergedDive {
   std::string name;
   MappingSummary summary;
   std::vector<Loop> ledger;
-  int without_features = 0;  ///< keyframes that add nothing to what the map sees
+  int without_features = 0;  ///< keyframes that add nothing to what earlier ones see
 };
 
 /// Adds the dive of a run to a common map: looks for its places in the map, keyframe by keyframe, and writes
