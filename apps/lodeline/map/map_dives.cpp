@@ -5,6 +5,7 @@
 #include "lodeline/mapping/control/control_factor.h"
 #include "lodeline/mapping/session/map_north.h"
 #include "lodeline/mapping/session/map_points.h"
+#include "lodeline/mapping/session/map_surface.h"
 #include "lodeline/mapping/store/map_change.h"
 #include "lodeline/version.h"
 
@@ -28,18 +29,6 @@ RunFolder runOfDive(const MapFile& map, const MapDive& dive, HeadingReference no
   });
   run.landmarks = mapPointsOf(map, dive.id);
   return run;
-}
-
-/// Depth of the origin of the map by the first keyframe that knows its depth.
-std::optional<double> depthAtOrigin(const MapFile& map) {
-  std::optional<double> depth_m;
-  for (const MapDive& dive : map.dives()) {
-    map.forEachKeyframe(dive.id, [&](const StoredKeyframe& row) {
-      if (!depth_m && row.solved && row.keyframe.depth_m)
-        depth_m = row.keyframe.depth_m->value + row.solved->map_from_body.translation.z();
-    });
-  }
-  return depth_m;
 }
 
 /// A dive with its keyframes in order of time.
@@ -88,7 +77,8 @@ void nameDives(const std::vector<VisitedDive>& dives, std::vector<ControlVisit>*
 
 std::vector<RunFolder> runsOfMap(const MapFile& map) {
   std::vector<RunFolder> runs;
-  const std::optional<double> depth_m = depthAtOrigin(map);
+  const std::optional<SurfaceHeight> surface = surfaceOf(map);
+  const std::optional<double> depth_m = surface ? std::optional(surface->height_m) : std::nullopt;
   for (const MapDive& dive : map.dives()) {
     runs.push_back(runOfDive(map, dive, northOf(map), depth_m));
     if (runs.back().trajectory.poses.size() < 2) {

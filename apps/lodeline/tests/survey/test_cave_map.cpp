@@ -12,6 +12,10 @@ namespace {
 
 using Line = std::vector<Vec3>;
 
+// Errors of heights: a random walk of 2 mm a keyframe that returns to 0, with a sigma of 0.03 m in the end.
+constexpr double kHeightStep_m = 0.002;
+constexpr double kHeightMemory = 0.9978;
+
 /// Points one metre apart along a line of corners, with small waves.
 Line resampled(const Line& corners) {
   Line line = {corners.front()};
@@ -68,12 +72,20 @@ class Diver {
     odom.translation.setZero();
     std::vector<Written> own;
     Mat6 covariance = 1e-10 * Mat6::Identity();
+    double height_error_m = 0.0, height_variance = 1e-10;
     for (size_t i = 0; i < line.size(); ++i) {
       const Rigid3 truth = trueAt(line, i);
       if (i > 0) {
         const Rigid3 before = odom;
         odom = odom * withDrift(own.back().truth.inverse() * truth);
         covariance = propagated(covariance, before, odom);
+        // The odometry uses the pressure sensor, which errs slowly.
+        height_error_m = kHeightMemory * height_error_m + kHeightStep_m * normal();
+        odom.translation.z() = truth.translation.z() - line.front().z() + height_error_m;
+        height_variance = kHeightMemory * kHeightMemory * height_variance + kHeightStep_m * kHeightStep_m;
+        covariance.row(2).setZero();
+        covariance.col(2).setZero();
+        covariance(2, 2) = height_variance;
       }
       keyframe.id = -1;
       keyframe.time = dive.start + Duration::fromSeconds(3.0 * static_cast<double>(i));
@@ -81,7 +93,7 @@ class Diver {
       keyframe.covariance = covariance;
       // North is known at the start, and carried on by odometry.
       keyframe.heading_sigma_rad = std::hypot(0.01, std::sqrt(covariance(5, 5)));
-      keyframe.depth_m = ScalarPrior{2.0 - truth.translation.z() + 0.03 * normal(), 0.03};
+      keyframe.depth_m = ScalarPrior{2.0 - line.front().z() - odom.translation.z(), 0.03};
       const KeyframeId made = change_->addKeyframe(keyframe);
       // A rough pose; the common solution replaces it.
       Rigid3 rough = odom;

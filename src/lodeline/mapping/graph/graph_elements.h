@@ -41,17 +41,25 @@ struct AzimuthPrior {
   double sigma_rad = 0.0;
 };
 
-/// Height of a node by pressure, up to an offset that is a parameter of the dive (HeightOffsetPrior).
+/// Height of a node in the world of its dive's odometry, which has used the pressure sensor. Heights in the
+/// world of the graph differ by an offset, a parameter of the dive: measured = true + offset.
 struct HeightMeasurement {
   KeyframeId node = -1;
   double height_m = 0.0;
   double sigma_m = 0.0;  ///< independent of other nodes
 };
 
-/// Error of a dive's heights that is common to all of them: measured = true + offset.
-struct HeightOffsetPrior {
+/// Depth of the origin of a dive's odometry below the surface of the water. The surface is that of all dives
+/// of a graph; its height is a parameter.
+struct OriginDepth {
   int dive = 0;
-  double offset_m = 0.0;
+  double depth_m = 0.0;
+  double sigma_m = 0.0;
+};
+
+/// Height of the surface of the water in the world of the graph, known before.
+struct SurfaceHeight {
+  double height_m = 0.0;
   double sigma_m = 0.0;
 };
 

@@ -67,16 +67,14 @@ void GraphProblem::addMeasuredPosition(const Vec3& position_W) {
 }
 
 std::vector<int> GraphProblem::openAxes() const {
-  const auto is_known = [](const std::map<int, DiveNumber>& numbers) {
-    return std::any_of(numbers.begin(), numbers.end(),
-                       [](const auto& entry) { return entry.second.is_measured; });
-  };
+  const bool has_azimuth = std::any_of(azimuths_.begin(), azimuths_.end(),
+                                       [](const auto& entry) { return entry.second.is_measured; });
   const bool has_position = !measured_positions_W_.empty();
   std::vector<int> open;
   if (!has_position) open = {0, 1};
-  if (!has_position && !is_known(height_offsets_)) open.push_back(2);
+  if (!has_position && !surface_.is_measured) open.push_back(2);
   if (!has_tilt_) open.insert(open.end(), {3, 4});
-  if (measured_positions_W_.size() < 2 && !is_known(azimuths_)) open.push_back(5);
+  if (measured_positions_W_.size() < 2 && !has_azimuth) open.push_back(5);
   return open;
 }
 

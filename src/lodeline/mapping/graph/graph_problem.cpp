@@ -85,14 +85,14 @@ void GraphProblem::add(const HeadingMeasurement& measurement) {
   auto factor = std::make_unique<HeadingFactor>(measurement.odom_from_body, measurement.sigma_rad);
   const double present =
       azimuthOf(poseFromBlock(headed.pose.data()).rotation * measurement.odom_from_body.conjugate());
-  DiveNumber& azimuth = numberOf(headed.dive, present, kWeakRotation_rad, &azimuths_);
+  CommonNumber& azimuth = numberOf(headed.dive, present, kWeakRotation_rad, &azimuths_);
   addCertain(std::move(factor), {headed.pose.data(), &azimuth.value});
 }
 
 void GraphProblem::add(const HeightMeasurement& measurement) {
   Node& high = node(measurement.node, "height");
   auto factor = std::make_unique<HeightFactor>(measurement.height_m, measurement.sigma_m);
-  DiveNumber& offset =
+  CommonNumber& offset =
       numberOf(high.dive, measurement.height_m - high.pose[2], kWeakPosition_m, &height_offsets_);
   addCertain(std::move(factor), {high.pose.data(), &offset.value});
 }
@@ -167,24 +167,36 @@ void GraphProblem::add(const AzimuthPrior& prior) {
            &numberOf(prior.dive, prior.azimuth_rad, kWeakRotation_rad, &azimuths_));
 }
 
-void GraphProblem::add(const HeightOffsetPrior& prior) {
-  setPrior(prior.offset_m, prior.sigma_m, "height offset of a dive",
-           &numberOf(prior.dive, prior.offset_m, kWeakPosition_m, &height_offsets_));
+void GraphProblem::add(const OriginDepth& depth) {
+  const auto [place, is_new] = origin_depths_.try_emplace(depth.dive, nullptr);
+  if (!is_new) return place->second->set(depth.depth_m, depth.sigma_m);
+  auto factor = std::make_unique<OriginDepthFactor>(depth.depth_m, depth.sigma_m);
+  place->second = factor.get();
+  CommonNumber& offset = numberOf(depth.dive, 0.0, kWeakPosition_m, &height_offsets_);
+  start(&surface_, depth.depth_m - offset.value, kWeakPosition_m);
+  addCertain(std::move(factor), {&offset.value, &surface_.value});
 }
 
-GraphProblem::DiveNumber& GraphProblem::numberOf(int dive, double first_value, double weak_sigma,
-                                                 std::map<int, DiveNumber>* numbers) {
-  const auto [place, is_new] = numbers->try_emplace(dive);
-  DiveNumber& number = place->second;
-  if (is_new) {
-    number.value = first_value;
-    number.prior.append(&number.value, 1, Eigen::VectorXd::Constant(1, weak_sigma));
-    addCertain(std::make_unique<PriorFactor>(number.prior), {&number.value});
-  }
+void GraphProblem::add(const SurfaceHeight& surface) {
+  start(&surface_, surface.height_m, kWeakPosition_m);
+  setPrior(surface.height_m, surface.sigma_m, "height of the surface", &surface_);
+}
+
+GraphProblem::CommonNumber& GraphProblem::numberOf(int dive, double first_value, double weak_sigma,
+                                                   std::map<int, CommonNumber>* numbers) {
+  CommonNumber& number = (*numbers)[dive];
+  start(&number, first_value, weak_sigma);
   return number;
 }
 
-void GraphProblem::setPrior(double value, double sigma, const char* what, DiveNumber* number) {
+void GraphProblem::start(CommonNumber* number, double first_value, double weak_sigma) {
+  if (!number->prior.blocks.empty()) return;
+  number->value = first_value;
+  number->prior.append(&number->value, 1, Eigen::VectorXd::Constant(1, weak_sigma));
+  addCertain(std::make_unique<PriorFactor>(number->prior), {&number->value});
+}
+
+void GraphProblem::setPrior(double value, double sigma, const char* what, CommonNumber* number) {
   if (!std::isfinite(value) || !(sigma > 0.0) || !std::isfinite(sigma)) {
     throw InputError(fmt::format("{}: the value must be finite and sigma positive", what));
   }
@@ -246,9 +258,10 @@ std::optional<double> GraphProblem::azimuthSigma(int dive) const {
   return 1.0 / found->second.prior.sqrt_information(0, 0);
 }
 
-bool GraphProblem::hasHeightOffset(int dive) const {
-  const auto found = height_offsets_.find(dive);
-  return found != height_offsets_.end() && found->second.is_measured;
+std::optional<double> GraphProblem::originDepthSigma(int dive) const {
+  const auto found = origin_depths_.find(dive);
+  if (found == origin_depths_.end()) return std::nullopt;
+  return found->second->sigma_m();
 }
 
 }  // namespace lodeline

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "lodeline/factors/prior_factor.h"
+#include "lodeline/mapping/graph/factors/height_factor.h"
 #include "lodeline/mapping/graph/graph_covariance.h"
 #include "lodeline/mapping/graph/graph_elements.h"
 #include "lodeline/mapping/graph/motion/odometry_chains.h"
@@ -69,7 +70,8 @@ class GraphProblem {
   void add(const GraphLandmark& landmark);
   void add(const LandmarkObservation& observation);
   void add(const AzimuthPrior& prior);
-  void add(const HeightOffsetPrior& prior);
+  void add(const OriginDepth& depth);
+  void add(const SurfaceHeight& surface);
 
   /// Holds what the measurements leave open, see PoseGraph. To be called before each solution.
   void hold();
@@ -91,8 +93,9 @@ class GraphProblem {
   Vec3 landmark(const std::string& name) const;
   double azimuth(int dive) const;
   double heightOffset(int dive) const;
+  double surfaceHeight() const { return surface_.value; }
   std::optional<double> azimuthSigma(int dive) const;
-  bool hasHeightOffset(int dive) const;
+  std::optional<double> originDepthSigma(int dive) const;
 
  private:
   struct Node {
@@ -102,8 +105,8 @@ class GraphProblem {
     std::vector<int> free_axes{0, 1, 2, 3, 4, 5};
     KeyframeId part = -1;  ///< a node of the same part, nearer to its first node
   };
-  /// A number that is common to a dive, with its prior.
-  struct DiveNumber {
+  /// A number that is common to a dive, or to all of them, with its prior.
+  struct CommonNumber {
     double value = 0.0;
     Prior prior;
     bool is_measured = false;
@@ -118,8 +121,10 @@ class GraphProblem {
 
   Node& node(KeyframeId id, const char* what);
   const Node& node(KeyframeId id) const;
-  DiveNumber& numberOf(int dive, double first_value, double weak_sigma, std::map<int, DiveNumber>* numbers);
-  static void setPrior(double value, double sigma, const char* what, DiveNumber* number);
+  CommonNumber& numberOf(int dive, double first_value, double weak_sigma,
+                         std::map<int, CommonNumber>* numbers);
+  void start(CommonNumber* number, double first_value, double weak_sigma);
+  static void setPrior(double value, double sigma, const char* what, CommonNumber* number);
   ReportedFactor& report(FactorReport::Kind kind, bool is_robust, KeyframeId node, int degrees_of_freedom);
   void addCertain(std::unique_ptr<ceres::CostFunction> function, const std::vector<double*>& parameters);
   KeyframeId partOf(KeyframeId id);
@@ -129,7 +134,9 @@ class GraphProblem {
 
   // The problem refers to everything below. Maps and deques keep the addresses of their elements.
   std::map<KeyframeId, Node> nodes_;
-  std::map<int, DiveNumber> azimuths_, height_offsets_;
+  std::map<int, CommonNumber> azimuths_, height_offsets_;
+  CommonNumber surface_;  ///< height in W, m
+  std::map<int, OriginDepthFactor*> origin_depths_;
   std::map<std::string, LandmarkState> landmarks_;
   std::deque<ReportedFactor> reported_;
   std::vector<std::unique_ptr<ceres::CostFunction>> functions_;  ///< of all other factors

@@ -72,6 +72,7 @@ std::shared_ptr<const GraphCovariance::Factorization> GraphProblem::factorizatio
   }
   for (auto& [dive, number] : azimuths_) options.parameter_blocks.push_back(&number.value);
   for (auto& [dive, number] : height_offsets_) options.parameter_blocks.push_back(&number.value);
+  if (!surface_.prior.blocks.empty()) options.parameter_blocks.push_back(&surface_.value);
   for (auto& [name, seen] : landmarks_) options.parameter_blocks.push_back(seen.position_W.data());
 
   ceres::CRSMatrix rows;

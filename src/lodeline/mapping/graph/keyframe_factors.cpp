@@ -23,10 +23,17 @@ TiltMeasurement tiltOf(const MapKeyframe& keyframe, double least_sigma_rad) {
           std::max(least_sigma_rad, std::sqrt(std::max(variance, 0.0)))};
 }
 
-/// Variance of a turn about the vertical by odometry; its covariance is in axes of the first body.
-double turnVariance(const MapKeyframe& previous, const RelativePose& odometry) {
-  const Vec3 up_B = previous.odom_from_body.rotation.conjugate() * Vec3::UnitZ();
-  return up_B.dot(odometry.covariance.bottomRightCorner<3, 3>() * up_B);
+/// Variance along up of a 3 x 3 covariance in axes of a keyframe's body.
+double varianceAlongUp(const MapKeyframe& keyframe, const Mat3& covariance_B) {
+  const Vec3 up_B = keyframe.odom_from_body.rotation.conjugate() * Vec3::UnitZ();
+  return up_B.dot(covariance_B * up_B);
+}
+
+/// Variance of what a value adds to the value before it and the odometry since; see addKeyframe().
+/// `predicted`: its variance by these two. Empty where it adds nothing.
+std::optional<double> addedVariance(double variance, double predicted) {
+  if (variance >= predicted) return std::nullopt;
+  return variance * predicted / (predicted - variance);
 }
 
 /// `odometry`: from the previous keyframe, null for the first one of a dive.
@@ -43,24 +50,41 @@ void addHeading(const MapKeyframe& keyframe, const MapKeyframe* previous, const 
     graph->add(AzimuthPrior{keyframe.dive, 0.0, azimuth_sigma});
   }
   const double common_variance = std::pow(*graph->azimuthSigma(keyframe.dive), 2) - north_variance;
-  double variance = sigma * sigma - common_variance;
+  std::optional<double> variance = sigma * sigma - common_variance;
   if (odometry && previous->heading_sigma_rad) {
-    const double predicted =
-        std::pow(*previous->heading_sigma_rad, 2) - common_variance + turnVariance(*previous, *odometry);
-    if (variance >= predicted) return;
-    variance *= predicted / (predicted - variance);
+    const double turn_variance = varianceAlongUp(*previous, odometry->covariance.bottomRightCorner<3, 3>());
+    variance =
+        addedVariance(*variance, std::pow(*previous->heading_sigma_rad, 2) - common_variance + turn_variance);
+    if (!variance) return;
   }
   const Quat north_from_odom = so3::exp(keyframe.north_from_odom_rad * Vec3::UnitZ());
   graph->add(HeadingMeasurement{keyframe.id, north_from_odom * keyframe.odom_from_body.rotation,
-                                std::sqrt(variance)});
+                                std::sqrt(*variance)});
 }
 
-void addDepth(const MapKeyframe& keyframe, double offset_sigma_m, PoseGraph* graph) {
-  checkSigma(keyframe.depth_m->sigma, keyframe, "depth");
-  if (!graph->hasHeightOffset(keyframe.dive)) {
-    graph->add(HeightOffsetPrior{keyframe.dive, 0.0, offset_sigma_m});
+double heightVariance(const MapKeyframe& keyframe, const KeyframeFactorOptions& options) {
+  return std::max(keyframe.covariance(2, 2), std::pow(options.least_height_sigma_m, 2));
+}
+
+void addHeight(const MapKeyframe& keyframe, const MapKeyframe* previous, const RelativePose* odometry,
+               const KeyframeFactorOptions& options, PoseGraph* graph) {
+  std::optional<double> variance = heightVariance(keyframe, options);
+  if (odometry && previous->depth_m) {
+    const double rise_variance = varianceAlongUp(*previous, odometry->covariance.topLeftCorner<3, 3>());
+    variance = addedVariance(*variance, heightVariance(*previous, options) + rise_variance);
   }
-  graph->add(HeightMeasurement{keyframe.id, -keyframe.depth_m->value, keyframe.depth_m->sigma});
+  if (variance)
+    graph->add(HeightMeasurement{keyframe.id, keyframe.odom_from_body.translation.z(), std::sqrt(*variance)});
+}
+
+void addOriginDepth(const MapKeyframe& keyframe, const KeyframeFactorOptions& options, PoseGraph* graph) {
+  checkSigma(keyframe.depth_m->sigma, keyframe, "depth");
+  // The depth of the dive is known as well as at its best keyframe.
+  const double sigma_m = std::hypot(options.common_depth_sigma_m, keyframe.depth_m->sigma);
+  const std::optional<double> known_sigma_m = graph->originDepthSigma(keyframe.dive);
+  if (known_sigma_m && *known_sigma_m <= sigma_m) return;
+  graph->add(
+      OriginDepth{keyframe.dive, keyframe.depth_m->value + keyframe.odom_from_body.translation.z(), sigma_m});
 }
 
 }  // namespace
@@ -72,7 +96,8 @@ void KeyframeFactorOptions::check() const {
     throw UsageError("the independent share of heading errors must lie between 0 and 1");
   }
   if (!(north_sigma_rad >= 0.0)) throw UsageError("sigma of the north must not be negative");
-  if (!(height_offset_sigma_m > 0.0)) throw UsageError("sigma of the height offset must be positive");
+  if (!(common_depth_sigma_m > 0.0)) throw UsageError("the common sigma of depths must be positive");
+  if (!(least_height_sigma_m > 0.0)) throw UsageError("the least sigma of a height must be positive");
 }
 
 void addKeyframe(const MapKeyframe& keyframe, const MapKeyframe* previous, PoseGraph* graph,
@@ -91,10 +116,11 @@ void addKeyframe(const MapKeyframe& keyframe, const MapKeyframe* previous, PoseG
     graph->addNode(keyframe.id, keyframe.dive, first_world_from_odom * keyframe.odom_from_body);
   }
   graph->add(tiltOf(keyframe, options.least_tilt_sigma_rad));
-  if (keyframe.heading_sigma_rad) {
-    addHeading(keyframe, previous, odometry ? &*odometry : nullptr, options, graph);
-  }
-  if (keyframe.depth_m) addDepth(keyframe, options.height_offset_sigma_m, graph);
+  const RelativePose* since_previous = odometry ? &*odometry : nullptr;
+  if (keyframe.heading_sigma_rad) addHeading(keyframe, previous, since_previous, options, graph);
+  if (!keyframe.depth_m) return;
+  addHeight(keyframe, previous, since_previous, options, graph);
+  addOriginDepth(keyframe, options, graph);
 }
 
 GraphEdge edgeOf(const Loop& loop) {

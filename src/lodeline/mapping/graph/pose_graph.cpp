@@ -60,7 +60,8 @@ void PoseGraph::add(const PositionMeasurement& measurement) { problem_->add(meas
 void PoseGraph::add(const GraphLandmark& landmark) { problem_->add(landmark); }
 void PoseGraph::add(const LandmarkObservation& observation) { problem_->add(observation); }
 void PoseGraph::add(const AzimuthPrior& prior) { problem_->add(prior); }
-void PoseGraph::add(const HeightOffsetPrior& prior) { problem_->add(prior); }
+void PoseGraph::add(const OriginDepth& depth) { problem_->add(depth); }
+void PoseGraph::add(const SurfaceHeight& surface) { problem_->add(surface); }
 
 GraphSummary PoseGraph::solve() {
   GraphSummary summary;
@@ -84,8 +85,9 @@ std::map<KeyframeId, Rigid3> PoseGraph::poses() const { return problem_->poses()
 Vec3 PoseGraph::landmark(const std::string& name) const { return problem_->landmark(name); }
 double PoseGraph::azimuth(int dive) const { return problem_->azimuth(dive); }
 double PoseGraph::heightOffset(int dive) const { return problem_->heightOffset(dive); }
+double PoseGraph::surfaceHeight() const { return problem_->surfaceHeight(); }
 std::optional<double> PoseGraph::azimuthSigma(int dive) const { return problem_->azimuthSigma(dive); }
-bool PoseGraph::hasHeightOffset(int dive) const { return problem_->hasHeightOffset(dive); }
+std::optional<double> PoseGraph::originDepthSigma(int dive) const { return problem_->originDepthSigma(dive); }
 GraphCovariance PoseGraph::covariance() const { return GraphCovariance(problem_->factorization()); }
 
 }  // namespace lodeline

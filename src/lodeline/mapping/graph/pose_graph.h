@@ -48,9 +48,10 @@ class PoseGraph {
   void add(const PositionMeasurement& measurement);
   void add(const GraphLandmark& landmark);
   void add(const LandmarkObservation& observation);
-  /// A later prior of the same dive replaces an earlier one. Without one, the azimuth or offset is free.
+  /// A later one, or one of the same dive, replaces an earlier one. Without one, its number is free.
   void add(const AzimuthPrior& prior);
-  void add(const HeightOffsetPrior& prior);
+  void add(const OriginDepth& depth);
+  void add(const SurfaceHeight& surface);
 
   /// Estimates all nodes. Throws EstimationError where the solver fails.
   GraphSummary solve();
@@ -62,11 +63,12 @@ class PoseGraph {
   Vec3 landmark(const std::string& name) const;  ///< position in W, m
   double azimuth(int dive) const;                ///< of the dive's odometry world in W, rad
   double heightOffset(int dive) const;           ///< m
+  double surfaceHeight() const;                  ///< of the water in W, m; 0 without any depth
 
   /// Sigma of the azimuth prior of a dive, rad; empty without one.
   std::optional<double> azimuthSigma(int dive) const;
-  /// Whether a dive has a prior of its height offset.
-  bool hasHeightOffset(int dive) const;
+  /// Sigma of the depth of a dive's origin, m; empty without one.
+  std::optional<double> originDepthSigma(int dive) const;
 
   /// Covariances at the present estimate. The factorization is done once here; each request then solves for
   /// the columns of the nodes it names. Throws EstimationError where the graph is not determined.

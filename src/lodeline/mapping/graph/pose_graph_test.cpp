@@ -327,10 +327,77 @@ TEST(AddKeyframe, AddsOdometryTiltHeadingAndDepth) {
   EXPECT_EQ(graph.size(), 40U);
   ASSERT_TRUE(graph.azimuthSigma(0).has_value());
   EXPECT_NEAR(*graph.azimuthSigma(0), std::sqrt(0.9) * 0.01, 1e-12);
-  EXPECT_TRUE(graph.hasHeightOffset(0));
+  EXPECT_TRUE(graph.originDepthSigma(0).has_value());
   EXPECT_TRUE(graph.solve().converged);
   EXPECT_NEAR(graph.pose(39).translation.z(), dive.truth[39].translation.z(), 0.3);
   EXPECT_LT(std::sqrt(graph.covariance().of(39)(2, 2)), 0.15);
+}
+
+/// Two dives of one keyframe each, at depths of 30 and 31 m by a density known to 0.4 %.
+PoseGraph twoDepths() {
+  PoseGraph graph;
+  for (const int dive : {0, 1}) {
+    MapKeyframe keyframe;
+    keyframe.id = dive;
+    keyframe.dive = dive;
+    keyframe.odom_from_body.translation.z() = 5.0 * dive;
+    keyframe.depth_m = ScalarPrior{30.0 + dive, 0.12};
+    addKeyframe(keyframe, nullptr, &graph);
+  }
+  return graph;
+}
+
+TEST(AddKeyframe, DepthsOfTwoDivesDifferByAirPressureAndDensity) {
+  PoseGraph graph = twoDepths();
+  EXPECT_TRUE(graph.solve().converged);
+  EXPECT_NEAR(graph.pose(0).translation.z(), 0.0, 1e-6);
+  EXPECT_NEAR(graph.pose(1).translation.z(), -1.0, 1e-3);
+  EXPECT_NEAR(graph.surfaceHeight(), 30.0, 1e-3);
+  // Each dive: 0.1 m of the air and the water level, 0.12 m of the density, 0.01 m of the height.
+  const double variance = 0.1 * 0.1 + 0.12 * 0.12 + 0.01 * 0.01;
+  EXPECT_NEAR(std::sqrt(graph.covariance().of(1)(2, 2)), std::sqrt(2.0 * variance), 1e-3);
+}
+
+TEST(AddKeyframe, AStatedHeightOfOneDiveIsThatOfTheOther) {
+  PoseGraph graph = twoDepths();
+  PositionMeasurement entrance;
+  entrance.name = "entrance";
+  entrance.node = 0;
+  entrance.position_W = Vec3(0.0, 0.0, 412.0);
+  entrance.covariance = 1e-4 * Mat3::Identity();
+  graph.add(entrance);
+  EXPECT_TRUE(graph.solve().converged);
+  EXPECT_NEAR(graph.pose(0).translation.z(), 412.0, 1e-3);
+  EXPECT_NEAR(graph.pose(1).translation.z(), 411.0, 1e-2);
+  EXPECT_NEAR(graph.surfaceHeight(), 442.0, 1e-2);
+}
+
+TEST(AddKeyframe, AKnownSurfaceGivesADiveItsHeight) {
+  PoseGraph graph = twoDepths();
+  graph.add(SurfaceHeight{100.0, 0.05});
+  EXPECT_TRUE(graph.solve().converged);
+  EXPECT_NEAR(graph.pose(0).translation.z(), 70.0, 1e-3);
+  EXPECT_NEAR(graph.pose(1).translation.z(), 69.0, 1e-3);
+  const double variance = 0.1 * 0.1 + 0.12 * 0.12 + 0.01 * 0.01 + 0.05 * 0.05;
+  EXPECT_NEAR(std::sqrt(graph.covariance().of(1)(2, 2)), std::sqrt(variance), 1e-3);
+}
+
+TEST(AddKeyframe, TheDepthOfADiveIsThatOfItsBestKeyframe) {
+  PoseGraph graph;
+  graph.add(SurfaceHeight{0.0, 0.01});
+  MapKeyframe first;
+  first.id = 0;
+  first.depth_m = ScalarPrior{20.5, 0.4};  // by a wrong density
+  addKeyframe(first, nullptr, &graph);
+  MapKeyframe second = first;
+  second.id = 1;
+  second.odom_from_body.translation = Vec3(1.0, 0.0, -1.0);
+  second.covariance = 1e-6 * Mat6::Identity();
+  second.depth_m = ScalarPrior{21.0, 0.05};
+  addKeyframe(second, &first, &graph);
+  EXPECT_TRUE(graph.solve().converged);
+  EXPECT_NEAR(graph.pose(0).translation.z(), -20.0, 0.01);
+  EXPECT_NEAR(graph.pose(1).translation.z(), -21.0, 0.01);
 }
 
 /// Sigma of the azimuth of the last keyframe relative to the first one, rad.

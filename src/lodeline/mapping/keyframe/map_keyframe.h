@@ -59,7 +59,8 @@ struct MapKeyframe {
   /// one sigma of the heading; empty where the magnetometer does not give north.
   double north_from_odom_rad = 0.0;
   std::optional<double> heading_sigma_rad;
-  /// Depth of the body below the surface by the pressure sensor and one sigma, m.
+  /// Depth of the body below the surface by the pressure sensor and the density of the water as estimated at
+  /// this keyframe, and one sigma, m. Errors of the density are common to a dive.
   std::optional<ScalarPrior> depth_m;
   std::vector<MapFeature> features;
   std::vector<SeenTag> tags;           ///< a map keeps them as observations of control points

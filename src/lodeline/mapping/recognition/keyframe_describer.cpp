@@ -159,8 +159,10 @@ MapKeyframe keyframeOf(const FrameEstimate& estimate) {
     keyframe.heading_sigma_rad = std::hypot(magnetometer.heading_sigma_rad, magnetometer.axes_sigma_rad);
   }
   if (const auto& gauge = estimate.sensors.of<DepthEstimate>().gauge) {
-    // The gauge's readings give the height of the body, whose sigma is therefore that of the depth.
-    keyframe.depth_m = ScalarPrior{gauge->body_depth_m, std::sqrt(estimate.covariance(2, 2))};
+    const double depth_m = gauge->body_depth_m / gauge->density_ratio;
+    const double density_sigma = gauge->density_ratio_sigma / gauge->density_ratio;
+    keyframe.depth_m =
+        ScalarPrior{depth_m, std::hypot(std::sqrt(estimate.covariance(2, 2)), density_sigma * depth_m)};
   }
   return keyframe;
 }

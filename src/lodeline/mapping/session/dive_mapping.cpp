@@ -9,6 +9,7 @@
 #include "lodeline/mapping/session/loops/cloud_loops.h"
 #include "lodeline/mapping/session/loops/field_support.h"
 #include "lodeline/mapping/session/map_north.h"
+#include "lodeline/mapping/session/map_surface.h"
 #include "lodeline/util/thread_clock.h"
 
 namespace lodeline {
@@ -97,9 +98,11 @@ void DiveMapping::loadEarlier() {
       known_.add(knownOf(keyframe, pose, path_m), odometry);
       if (!keyframe.features.empty()) index_.add(keyframe);
       next_id_ = std::max(next_id_, id + 1);
-      if (!depth_datum_m_ && keyframe.depth_m)
-        depth_datum_m_ = keyframe.depth_m->value + pose.translation.z();
     }
+  }
+  if (std::optional<SurfaceHeight> surface = surfaceOf(*earlier_)) {
+    surface->sigma_m = std::hypot(surface->sigma_m, options_.factors.common_depth_sigma_m);
+    graph_.add(*surface);
   }
   tags_.load(*earlier_);
 }
@@ -130,10 +133,6 @@ void DiveMapping::store(MapKeyframe* keyframe) {
   if (!previous_ && earlier_ != nullptr && options_.start) place(*keyframe);
   MapKeyframe measured = *keyframe;
   measured.features.clear();
-  if (keyframe->depth_m) {
-    if (!depth_datum_m_) depth_datum_m_ = keyframe->depth_m->value + keyframe->odom_from_body.translation.z();
-    measured.depth_m->value -= *depth_datum_m_;
-  }
   addKeyframe(measured, previous_ ? &*previous_ : nullptr, &graph_, map_from_odom_, options_.factors);
   const double moved_m = odometry ? odometry->from_from_to.translation.norm() : 0.0;
   path_m_ += moved_m;

@@ -114,7 +114,6 @@ class DiveMapping {
   double path_m_ = 0.0;
   std::optional<MapKeyframe> previous_;  ///< without features
   std::vector<MapKeyframe> recent_;      ///< the last seconds, with features
-  std::optional<double> depth_datum_m_;  ///< depth at height 0 of the map
   Rigid3 map_from_odom_;
   bool has_north_ = false;
   bool is_placed_ = true;

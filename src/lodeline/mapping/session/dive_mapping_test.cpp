@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "lodeline/mapping/session/map_merge.h"
 #include "lodeline/mapping/session/test_mapped_dive.h"
 
 namespace lodeline {
@@ -29,8 +32,19 @@ MappedDiveOptions circuit(uint64_t seed) {
   return options;
 }
 
+/// Path of the map of the dive.
+std::filesystem::path circuitMap() {
+  return std::filesystem::path(testing::TempDir()) / "lodeline_dive_mapping" / "circuit.db";
+}
+
+/// The first circuit. It is swum once, for all tests.
+const MappedDive& firstCircuit() {
+  static const MappedDive dive(circuit(1), newMap("circuit.db"), nullptr);
+  return dive;
+}
+
 TEST(DiveMapping, FindsTheLoopsOfACircuitSwumTwiceAndNoFalseOne) {
-  const MappedDive dive(circuit(1), newMap("circuit.db"), nullptr);
+  const MappedDive& dive = firstCircuit();
   EXPECT_GT(dive.summary.accepted, 20);
   for (const double error_m : dive.loop_errors_m) EXPECT_LT(error_m, 0.3) << "a false loop";
   const double map_m = positionRms(dive.in_map, dive.truth);
@@ -38,6 +52,33 @@ TEST(DiveMapping, FindsTheLoopsOfACircuitSwumTwiceAndNoFalseOne) {
   RecordProperty("map_mm", static_cast<int>(1e3 * map_m));
   RecordProperty("loops", dive.summary.accepted);
   EXPECT_LT(map_m, 0.1) << "0.08 % of the path";
+}
+
+TEST(MapMerge, ASecondLapAddsFeaturesOnlyWhereTheFirstHasNone) {
+  const MappedDive& dive = firstCircuit();
+  const MapFile run = MapFile::open(circuitMap(), MapFile::Access::Read);
+  MapFile map = MapFile::create(newMap("common.db"), {});
+  const MergedDive merged = mergeDive(&map, run, {});
+  std::vector<StoredKeyframe> rows;
+  map.forEachKeyframe(map.dives().front().id, [&](const StoredKeyframe& row) { rows.push_back(row); });
+  ASSERT_EQ(rows.size(), dive.true_poses.size());
+  EXPECT_GT(merged.without_features, 20);
+  std::vector<Rigid3> truth, with_features;
+  for (const auto& [id, pose] : dive.true_poses) truth.push_back(pose);
+  int left_out = 0;
+  for (size_t k = 0; k < rows.size(); ++k) {
+    if (rows[k].feature_count > 0) {
+      with_features.push_back(truth[k]);
+      continue;
+    }
+    ++left_out;
+    const auto isNear = [&](const Rigid3& earlier) {
+      const Rigid3 relative = earlier.inverse() * truth[k];
+      return relative.translation.norm() < 0.85 && Quat::Identity().angularDistance(relative.rotation) < 0.4;
+    };
+    EXPECT_TRUE(std::any_of(with_features.begin(), with_features.end(), isNear)) << "keyframe " << k;
+  }
+  EXPECT_EQ(left_out, merged.without_features);
 }
 
 }  // namespace

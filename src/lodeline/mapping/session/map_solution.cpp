@@ -60,7 +60,6 @@ Rigid3 turnTo(HeadingReference north, const MapFile& map) {
 }
 
 void addDives(const MapFile& map, const MapSolutionOptions& options, MapGraph* result) {
-  std::optional<double> depth_datum_m;
   const HeadingReference north = northOf(map);
   const Rigid3 turned_from_map = turnTo(north, map);
   for (const MapDive& dive : map.dives()) {
@@ -68,20 +67,15 @@ void addDives(const MapFile& map, const MapSolutionOptions& options, MapGraph* r
     factors.north_sigma_rad = northSigma_rad(north, dive.heading_reference);
     result->names[dive.id] = dive.name;
     result->groups.of(dive.id);
-    std::optional<MapKeyframe> previous;
+    const MapKeyframe* previous = nullptr;
     std::vector<StoredKeyframe> rows;
     map.forEachKeyframe(dive.id, [&](const StoredKeyframe& row) { rows.push_back(row); });
     for (const StoredKeyframe& row : rows) {
-      MapKeyframe keyframe = row.keyframe;
-      if (keyframe.depth_m) {
-        if (!depth_datum_m) depth_datum_m = keyframe.depth_m->value + keyframe.odom_from_body.translation.z();
-        keyframe.depth_m->value -= *depth_datum_m;
-      }
-      addKeyframe(keyframe, previous ? &*previous : nullptr, &result->graph,
-                  turned_from_map * startOf(rows.front()), factors);
+      const MapKeyframe& keyframe = row.keyframe;
+      addKeyframe(keyframe, previous, &result->graph, turned_from_map * startOf(rows.front()), factors);
       result->keyframes.push_back(keyframe.id);
       result->dive_of[keyframe.id] = dive.id;
-      previous = std::move(keyframe);
+      previous = &keyframe;
     }
   }
 }

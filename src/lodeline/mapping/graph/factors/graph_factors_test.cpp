@@ -55,6 +55,8 @@ TEST(GraphFactors, AreZeroAtTruth) {
       1e-10);
   EXPECT_LT(residualOf(HeadingFactor(kOdomFromBody, 0.01), {poseVector(kFrom), scalar(0.7)}).norm(), 1e-10);
   EXPECT_LT(residualOf(HeightFactor(1.2, 0.01), {poseVector(kFrom), scalar(0.2)}).norm(), 1e-10);
+  // The origin of odometry is at -0.2 m, 12.2 m below a surface at 12 m.
+  EXPECT_LT(residualOf(OriginDepthFactor(12.2, 0.01), {scalar(0.2), scalar(12.0)}).norm(), 1e-10);
   EXPECT_LT(
       residualOf(PositionFactor(kFrom * Vec3(1, 2, 3), Mat3::Identity(), Vec3(1, 2, 3)), {poseVector(kFrom)})
           .norm(),
@@ -73,6 +75,7 @@ TEST(GraphFactors, JacobiansMatchNumericDifferentiation) {
   expectJacobiansMatch(TiltFactor(kFrom.rotation.conjugate() * Vec3::UnitZ(), 0.01), {poseVector(kFrom)});
   expectJacobiansMatch(HeadingFactor(kTo.rotation, 0.01), {poseVector(kFrom), scalar(0.3)});
   expectJacobiansMatch(HeightFactor(1.0, 0.02), {poseVector(kFrom), scalar(0.3)});
+  expectJacobiansMatch(OriginDepthFactor(7.0, 0.02), {scalar(0.3), scalar(6.0)});
   expectJacobiansMatch(PositionFactor(Vec3(1, 1, 1), covariance, Vec3(0.3, -0.2, 0.1)), {poseVector(kFrom)});
   expectJacobiansMatch(LandmarkObservationFactor(Vec3(1, 1, 1), covariance),
                        {poseVector(kFrom), Eigen::VectorXd(Vec3(3, 2, 1))});
@@ -158,6 +161,7 @@ TEST(GraphFactors, RefuseNoiseThatIsNone) {
   EXPECT_THROW(TiltFactor(Vec3::Zero(), 0.1), InputError);
   EXPECT_THROW(HeadingFactor(Quat::Identity(), -1.0), InputError);
   EXPECT_THROW(HeightFactor(std::nan(""), 1.0), InputError);
+  EXPECT_THROW(OriginDepthFactor(1.0, 0.0), InputError);
   EXPECT_THROW(PositionFactor(Vec3::Zero(), -Mat3::Identity(), Vec3::Zero()), InputError);
   EXPECT_THROW(LandmarkObservationFactor(Vec3::Constant(INFINITY), Mat3::Identity()), InputError);
 }
