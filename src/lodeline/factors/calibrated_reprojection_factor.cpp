@@ -14,7 +14,7 @@ using RowMajor2 = Eigen::Matrix<double, 2, Cols, Eigen::RowMajor>;
 /// d(q) / d[phi, xi] of a secondary camera, for the homogeneous point q_0 in camera 0.
 Eigen::Matrix<double, 3, 6> byFurtherExtrinsics(const Rigid3& camera0_from_target, const double* correction,
                                                 const Vec3& point_C0, double rho) {
-  const Mat3 target_rotation = camera0_from_target.rotation.toRotationMatrix().transpose();
+  const Mat3 target_rotation = camera0_from_target.rotation.conjugate().toRotationMatrix();
   Eigen::Matrix<double, 3, 6> derivative;
   derivative << target_rotation * so3::skew(point_C0 - rho * camera0_from_target.translation) *
                     so3::leftJacobian(Vec3(correction)),
