@@ -84,9 +84,9 @@ TEST_F(ExportTest, TakesTheEntranceInTheUsualSpellingsAndFormatsInAnyCase) {
 }
 
 TEST_F(ExportTest, PutsTheEntranceAboveTheDepthThatTheRunMeasured) {
-  folder_.write(
-      "run/run.json",
-      R"({"heading": {"reference": "true north"}, "pressure": {"gauge": {"depth_at_origin_m": 6.002}}})");
+  folder_.write("run/run.json",
+                R"({"heading": {"reference": "true north"},
+          "pressure": {"gauge": {"depth_at_origin_m": 6.15205, "density_ratio": 1.025}}})");
   const Execution result = exportRun("-f survex,kml --entrance 29.83,-82.6,5");
   ASSERT_EQ(result.exit_code, 0) << result.output;
   EXPECT_THAT(text("run.svx"),

@@ -31,7 +31,7 @@ RunFolder runOf(const std::string& name, const std::vector<FrameEstimate>& estim
     run.heading_sigma_rad = magnetometer.heading_sigma_rad;
   }
   const auto& gauge = last->sensors.of<DepthEstimate>().gauge;
-  if (gauge) run.depth_at_origin_m = gauge->depth_at_origin_m;
+  if (gauge) run.depth_at_origin_m = gauge->depth_at_origin_m / gauge->density_ratio;
   if (last->camera_corrections) {
     run.camera_corrections = last->camera_corrections->extrinsics;
     run.intrinsics_corrections = last->camera_corrections->intrinsics;

@@ -109,12 +109,15 @@ void readHeading(const nlohmann::json& json, const fs::path& file, RunFolder* ru
   }
 }
 
-/// The gauge's values are in `pressure.gauge`, in older runs in `pressure` itself.
+/// The gauge's values are in `pressure.gauge`, in older runs in `pressure` itself. Its depths are those of
+/// the density that it assumes.
 void readStartDepth(const nlohmann::json& json, RunFolder* run) {
   const nlohmann::json pressure = json.value("pressure", nlohmann::json::object());
   const nlohmann::json gauge = pressure.value("gauge", pressure);
   const auto depth = gauge.find("depth_at_origin_m");
-  if (depth != gauge.end() && depth->is_number()) run->depth_at_origin_m = depth->get<double>();
+  const double density_ratio = gauge.value("density_ratio", 1.0);
+  if (depth != gauge.end() && depth->is_number() && density_ratio > 0.0)
+    run->depth_at_origin_m = depth->get<double>() / density_ratio;
 }
 
 void readCameraCorrections(const nlohmann::json& json, RunFolder* run) {
