@@ -159,7 +159,7 @@ class FrameMaker {
     gauge.density_ratio = states.density_ratio();
     gauge.lag_s = states.lag_s();
     gauge.body_depth_m =
-        gauge.depth_at_origin_m - gauge.density_ratio * refined->state.world_from_body.translation.z();
+        gauge.depth_at_origin_m / gauge.density_ratio - refined->state.world_from_body.translation.z();
   }
 
   const BatchProblem& problem_;

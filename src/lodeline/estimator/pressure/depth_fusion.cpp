@@ -300,7 +300,7 @@ DepthEstimate DepthFusion::estimate(const Window& window) const {
   gauge.lag_s = states.lag_s();
   gauge.lag_sigma_s = sigma(*states.lag);
   gauge.body_depth_m =
-      gauge.depth_at_origin_m - gauge.density_ratio * window.newest().worldFromBody().translation.z();
+      gauge.depth_at_origin_m / gauge.density_ratio - window.newest().worldFromBody().translation.z();
   estimate.gauge = gauge;
   return estimate;
 }

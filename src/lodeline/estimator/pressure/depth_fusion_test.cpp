@@ -136,6 +136,10 @@ TEST(DepthFusion, FindsLagAndDensity) {
   EXPECT_LT(last.density_ratio_sigma, 0.008);
   EXPECT_NEAR(last.density_ratio, 0.975, 3.0 * last.density_ratio_sigma);
   EXPECT_LT(last.density_ratio, 0.992);
+  // The depth is that of the water: the gauge reads 12 m at the origin, which is 12 m / 0.975 deep.
+  const double height_m = found.last().state.world_from_body.translation.z();
+  EXPECT_NEAR(last.body_depth_m, 12.0 / 0.975 - height_m, 3.0 * 12.0 * last.density_ratio_sigma);
+  EXPECT_GT(std::abs(last.body_depth_m - (12.0 - 0.975 * height_m)), 0.25);
   EXPECT_EQ(found.statuses.count(DepthStatus::Jump), 0u);
   EXPECT_EQ(found.statuses.count(DepthStatus::Slope), 0u) << "a lag is no other unit";
 }

@@ -159,10 +159,9 @@ MapKeyframe keyframeOf(const FrameEstimate& estimate) {
     keyframe.heading_sigma_rad = std::hypot(magnetometer.heading_sigma_rad, magnetometer.axes_sigma_rad);
   }
   if (const auto& gauge = estimate.sensors.of<DepthEstimate>().gauge) {
-    const double depth_m = gauge->body_depth_m / gauge->density_ratio;
-    const double density_sigma = gauge->density_ratio_sigma / gauge->density_ratio;
+    const double by_density_m = gauge->density_ratio_sigma / gauge->density_ratio * gauge->body_depth_m;
     keyframe.depth_m =
-        ScalarPrior{depth_m, std::hypot(std::sqrt(estimate.covariance(2, 2)), density_sigma * depth_m)};
+        ScalarPrior{gauge->body_depth_m, std::hypot(std::sqrt(estimate.covariance(2, 2)), by_density_m)};
   }
   return keyframe;
 }

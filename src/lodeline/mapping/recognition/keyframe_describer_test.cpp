@@ -50,18 +50,19 @@ TEST(KeyframeDescriber, DescribesTracksAndBlobs) {
   EXPECT_LE(keyframe.features.size(), 400u);
 }
 
-TEST(KeyframeDescriber, DepthsAreThoseOfTheWaterAndNotOfTheGauge) {
+TEST(KeyframeDescriber, DepthsAreAsUncertainAsTheHeightAndTheDensity) {
   FrameEstimate estimate;
-  estimate.state.world_from_body.translation.z() = -6.0;
   estimate.covariance.setIdentity();
+  estimate.covariance(2, 2) = 0.04;
   DepthEstimate::Gauge gauge;
   gauge.density_ratio = 1.025;
-  gauge.body_depth_m = gauge.density_ratio * 20.0;
+  gauge.density_ratio_sigma = 0.01025;
+  gauge.body_depth_m = 20.0;
   estimate.sensors.of<DepthEstimate>().gauge = gauge;
   const MapKeyframe keyframe = keyframeOf(estimate);
   ASSERT_TRUE(keyframe.depth_m.has_value());
   EXPECT_NEAR(keyframe.depth_m->value, 20.0, 1e-12);
-  EXPECT_NEAR(keyframe.depth_m->sigma, 1.0, 1e-12);
+  EXPECT_NEAR(keyframe.depth_m->sigma, std::sqrt(0.2 * 0.2 + 0.2 * 0.2), 1e-12);
 }
 
 TEST(KeyframeDescriber, KeyframesOfTwoVisitsAreALoop) {
