@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "lodeline/geometry/so3.h"
+#include "lodeline/mapping/graph/keyframe_factors.h"
 #include "lodeline/mapping/graph/motion/level_motion.h"
 
 namespace lodeline {
@@ -86,6 +87,14 @@ CircuitDive swumCircuit(const GraphCircuitOptions& options, std::mt19937_64* gen
     dive.keyframes.push_back(keyframe);
   }
   return dive;
+}
+
+PoseGraph graphOf(const CircuitDive& dive) {
+  PoseGraph graph;
+  for (size_t k = 0; k < dive.keyframes.size(); ++k) {
+    addKeyframe(dive.keyframes[k], k > 0 ? &dive.keyframes[k - 1] : nullptr, &graph, dive.truth[0]);
+  }
+  return graph;
 }
 
 Mat6 loopCovariance() {

@@ -31,6 +31,9 @@ struct GraphCircuitOptions {
 };
 CircuitDive swumCircuit(const GraphCircuitOptions& options, std::mt19937_64* generator);
 
+/// The keyframes of a dive, which begins at its true pose. Without loops.
+PoseGraph graphOf(const CircuitDive& dive);
+
 /// Covariance of loops: 2 cm, 0.3 degrees.
 Mat6 loopCovariance();
 /// A true loop between keyframes, with an error drawn from loopCovariance().

@@ -27,7 +27,8 @@ std::vector<FrameEstimate> walk(int steps) {
 
 TEST(RunOf, TakesPosesUncertaintiesAndLandmarks) {
   std::vector<FrameEstimate> estimates = walk(10);
-  estimates.back().sensors.of<DepthEstimate>().gauge = DepthEstimate::Gauge{.depth_at_origin_m = 9.0, .density_ratio = 2.0};
+  estimates.back().sensors.of<DepthEstimate>().gauge =
+      DepthEstimate::Gauge{.depth_at_origin_m = 9.0, .density_ratio = 2.0};
   const RunFolder run = runOf("dive", estimates, {{7, Vec3(1.0, 2.0, 3.0), 5}});
   ASSERT_EQ(run.trajectory.size(), 10u) << "without the estimate that has no pose";
   EXPECT_EQ(run.trajectory.poses[9].world_from_body.translation,
