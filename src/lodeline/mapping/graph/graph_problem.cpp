@@ -168,10 +168,10 @@ void GraphProblem::add(const AzimuthPrior& prior) {
 }
 
 void GraphProblem::add(const OriginDepth& depth) {
-  const auto [place, is_new] = origin_depths_.try_emplace(depth.dive, nullptr);
-  if (!is_new) return place->second->set(depth.depth_m, depth.sigma_m);
+  const auto known = origin_depths_.find(depth.dive);
+  if (known != origin_depths_.end()) return known->second->set(depth.depth_m, depth.sigma_m);
   auto factor = std::make_unique<OriginDepthFactor>(depth.depth_m, depth.sigma_m);
-  place->second = factor.get();
+  origin_depths_[depth.dive] = factor.get();
   CommonNumber& offset = numberOf(depth.dive, 0.0, kWeakPosition_m, &height_offsets_);
   start(&surface_, depth.depth_m - offset.value, kWeakPosition_m);
   addCertain(std::move(factor), {&offset.value, &surface_.value});
