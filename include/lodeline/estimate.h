@@ -174,7 +174,7 @@ struct DepthEstimate {
     double depth_at_origin_m = 0.0;
     double density_ratio = 1.0, density_ratio_sigma = 0.0;
     double lag_s = 0.0, lag_sigma_s = 0.0;
-    double body_depth_m = 0.0;  ///< of the body, as the gauge would read at its position
+    double body_depth_m = 0.0;  ///< of the body in the water, by the estimated density
     /// Sigma of the density ratio beyond the window's covariance.
     double unmodelled_sigma = 0.0;
     /// Sigma of the density ratio without images.
