@@ -11,10 +11,17 @@ namespace lodeline {
 namespace {
 
 constexpr double kSigmas = 3.0;
-// Standard deviation of the difference of two depths by pressure, m: weather, tide and gauge.
+// Standard deviation of the difference of two depths by pressure, m, beside their own: weather and tide.
 constexpr double kDepthSigma_m = 0.15;
 // A prediction wider than this, m, leaves the choice to appearance.
 constexpr double kWide_m = 5.0;
+
+/// Whether two depths differ by more than `reach_m` and their errors.
+bool areApart(const std::optional<ScalarPrior>& a, const std::optional<ScalarPrior>& b, double reach_m) {
+  if (!a || !b) return false;
+  const double sigma_m = std::hypot(kDepthSigma_m, a->sigma, b->sigma);
+  return std::abs(a->value - b->value) > reach_m + kSigmas * sigma_m;
+}
 
 double clampedExcess(double value, double limit) { return std::max(0.0, value - limit); }
 
@@ -60,9 +67,7 @@ std::vector<LoopCandidateKeyframe> CandidateSearch::find(const MapKeyframe& newe
     const bool same_dive = old_keyframe.dive == now.dive;
     if (same_dive && now.path_m - old_keyframe.path_m < options_.least_path_m) continue;
     if (old_keyframe.id == now.id) continue;
-    if (now.depth_m && old_keyframe.depth_m &&
-        std::abs(*now.depth_m - *old_keyframe.depth_m) > options_.view_distance_m + kSigmas * kDepthSigma_m)
-      continue;
+    if (areApart(now.depth_m, old_keyframe.depth_m, options_.view_distance_m)) continue;
     const double apart_m = (now.map_from_body.translation - old_keyframe.map_from_body.translation).norm();
     if (same_dive && apart_m > options_.view_distance_m + drift_m) continue;
     LoopCandidateKeyframe candidate{old_keyframe.id, known.predict(old_keyframe.id, now.id)};

@@ -39,7 +39,7 @@ KnownKeyframe knownOf(const MapKeyframe& keyframe, const Rigid3& map_from_body, 
   known.map_from_body = map_from_body;
   known.view_B = viewOf(keyframe);
   known.path_m = path_m;
-  if (keyframe.depth_m) known.depth_m = keyframe.depth_m->value;
+  known.depth_m = keyframe.depth_m;
   known.field = keyframe.field;
   return known;
 }

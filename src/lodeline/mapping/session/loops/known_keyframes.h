@@ -16,10 +16,10 @@ struct KnownKeyframe {
   int dive = 0;
   Time time;
   Rigid3 odom_from_body;
-  Rigid3 map_from_body;           ///< by the latest solution
-  Vec3 view_B = Vec3::UnitX();    ///< mean viewing direction of its features, unit
-  double path_m = 0.0;            ///< along its dive, from the first keyframe
-  std::optional<double> depth_m;  ///< below the surface
+  Rigid3 map_from_body;                ///< by the latest solution
+  Vec3 view_B = Vec3::UnitX();         ///< mean viewing direction of its features, unit
+  double path_m = 0.0;                 ///< along its dive, from the first keyframe
+  std::optional<ScalarPrior> depth_m;  ///< below the surface
   std::optional<KeyframeField> field;
 };
 
