@@ -81,7 +81,7 @@ coverage: test-dependencies
 	cmake --preset coverage
 	cmake --build --preset coverage
 	ctest --test-dir build/coverage --output-on-failure -j2
-	gcovr --root . --filter src/lodeline --filter include --exclude '.*test.*' --print-summary build/coverage
+	gcovr -j2 --gcov-ignore-parse-errors --root . --filter src/lodeline --filter include --exclude '.*test.*' --print-summary build/coverage
 
 # The checks of .clang-tidy on the product's sources, many files at a time: the outside headers take most of the time.
 # Three files are left out, because they include what only a build makes.
