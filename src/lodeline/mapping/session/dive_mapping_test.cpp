@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lodeline/mapping/session/map_merge.h"
+#include "lodeline/mapping/session/relocalizer.h"
 #include "lodeline/mapping/session/test_mapped_dive.h"
 
 namespace lodeline {
@@ -79,6 +80,37 @@ TEST(MapMerge, ASecondLapAddsFeaturesOnlyWhereTheFirstHasNone) {
     EXPECT_TRUE(std::any_of(with_features.begin(), with_features.end(), isNear)) << "keyframe " << k;
   }
   EXPECT_EQ(left_out, merged.without_features);
+}
+
+TEST(Relocalizer, FindsClipsOfASecondLapInTheMapOfTheFirst) {
+  firstCircuit();
+  const MapFile run = MapFile::open(circuitMap(), MapFile::Access::Read);
+  MapFile map = MapFile::create(newMap("places.db"), {});
+  mergeDive(&map, run, {});
+  std::vector<StoredKeyframe> rows;
+  map.forEachKeyframe(map.dives().front().id, [&](const StoredKeyframe& row) { rows.push_back(row); });
+  std::vector<KeyframeId> ids;
+  run.forEachKeyframe(run.dives().front().id,
+                      [&](const StoredKeyframe& row) { ids.push_back(row.keyframe.id); });
+  ASSERT_EQ(ids.size(), rows.size());
+  const Relocalizer relocalizer(map);
+  int clips = 0, found = 0;
+  for (size_t k = 1; k < rows.size(); ++k) {
+    // The map has no features of this clip.
+    if (rows[k - 1].feature_count > 0 || rows[k].feature_count > 0) continue;
+    ++clips;
+    std::string reason;
+    const std::vector<MapKeyframe> clip = {run.fullKeyframe(ids[k - 1]), run.fullKeyframe(ids[k])};
+    const std::optional<PlaceInMap> place = relocalizer.find(clip, &reason);
+    if (!place) continue;
+    ++found;
+    const Vec3 error_m = place->map_from_body.translation - rows[k].solved->map_from_body.translation;
+    EXPECT_LT(error_m.norm(), 0.3) << "a wrong place, keyframe " << k;
+  }
+  RecordProperty("clips", clips);
+  RecordProperty("found", found);
+  EXPECT_GT(clips, 5);
+  EXPECT_GE(found, 0.8 * clips);
 }
 
 }  // namespace
