@@ -44,7 +44,7 @@ test-sanitized: test-dependencies
 	  -R "^(fuzz\.|($$(echo $(SANITIZED) | tr ' ' '|'))_test)"
 
 test-sanitized-all:
-	$(MAKE) test-sanitized SANITIZED="$(SANITIZED) geometry cameras magnetometer imu ahrs frontend factors estimator batch calibration survey store graph cloud recognition control"
+	$(MAKE) test-sanitized SANITIZED="$(SANITIZED) geometry cameras magnetometer imu ahrs frontend factors problem estimator batch calibration survey store graph cloud recognition control"
 
 # Every kind of fault, three draws, on a real recording and a simulated dive; the table is build/faults/table.md.
 faults: build

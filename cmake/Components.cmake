@@ -1,7 +1,7 @@
 # Components of find_package(lodeline), and the layers of src/CMakeLists.txt that each consists of. Every component
 # except `core` can be left out; the program, its ROS node and the tests need all of them.
 set(LODELINE_core_LAYERS options util tables geometry sensors streams cameras magnetometer imu ahrs io logs board frontend
-    inspection factors estimator batch evaluation calibration rig_calibration api files)
+    inspection factors problem estimator batch evaluation calibration rig_calibration api files)
 set(LODELINE_simulation_LAYERS rendering simulation)
 set(LODELINE_rosbag_LAYERS film rosbag video)
 set(LODELINE_survey_LAYERS dives survey)

@@ -8,12 +8,12 @@
 #include <span>
 #include <vector>
 
-#include "lodeline/estimator/problem/simd_gemm.h"
 #include "lodeline/estimator/visual/reprojection_hessian.h"
 #include "lodeline/frontend/detection/image_pyramid.h"
 #include "lodeline/frontend/detection/structure_tensor.h"
 #include "lodeline/frontend/tracking/patch_sampling.h"
 #include "lodeline/io/images/png_filters.h"
+#include "lodeline/problem/simd_gemm.h"
 #include "simulation/rendering/cave/solid_texture.h"
 
 namespace lodeline {
@@ -63,7 +63,7 @@ class Digest {
 };
 
 void digestProducts() {
-  Digest digest("lodeline/estimator/problem/simd_gemm.cpp");
+  Digest digest("lodeline/problem/simd_gemm.cpp");
   for (int i = 0; i < 200; ++i) {
     Eigen::MatrixXd a(1 + integer(40), 1 + integer(30)), b(1 + integer(40), a.cols());
     Eigen::MatrixXd c(a.rows(), b.rows()), square(a.rows(), a.rows());

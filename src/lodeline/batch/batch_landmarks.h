@@ -3,8 +3,8 @@
 #include <functional>
 #include <vector>
 
-#include "lodeline/estimator/problem/normal_equations.h"
-#include "lodeline/estimator/state/window.h"
+#include "lodeline/problem/normal_equations.h"
+#include "lodeline/problem/state/window.h"
 
 namespace lodeline {
 

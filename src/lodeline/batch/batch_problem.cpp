@@ -5,11 +5,11 @@
 
 #include "lodeline/batch/batch_structure.h"
 #include "lodeline/estimator/magnetometer/field/magnetometer_states.h"
-#include "lodeline/estimator/problem/robust_loss.h"
-#include "lodeline/estimator/problem/window_terms.h"
 #include "lodeline/estimator/self_calibration/intrinsics_model_selection.h"
-#include "lodeline/estimator/state/camera_states.h"
 #include "lodeline/estimator/uncertainty/reported_covariance.h"
+#include "lodeline/problem/robust_loss.h"
+#include "lodeline/problem/state/camera_states.h"
+#include "lodeline/problem/window_terms.h"
 
 namespace lodeline {
 namespace {

@@ -14,14 +14,14 @@
 #include "lodeline/batch/state_order.h"
 #include "lodeline/batch/time_correlated_errors.h"
 #include "lodeline/estimator/magnetometer/heading_alignment.h"
-#include "lodeline/estimator/problem/factor_builder.h"
-#include "lodeline/estimator/problem/normal_equations.h"
-#include "lodeline/estimator/state/window.h"
+#include "lodeline/problem/factor_builder.h"
+#include "lodeline/problem/normal_equations.h"
+#include "lodeline/problem/state/window.h"
 
 namespace lodeline {
 
 /// Least-squares problem of a whole recording: the terms of the sliding window
-/// (estimator/problem/factor_builder.h) over all states at once, without marginalization and without
+/// (problem/factor_builder.h) over all states at once, without marginalization and without
 /// linearization points. Offsets that walk (magnetometer, pressure gauge) are chains of states, one per
 /// minute.
 class BatchProblem {

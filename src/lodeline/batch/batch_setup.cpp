@@ -6,8 +6,8 @@
 #include "lodeline/batch/batch_problem.h"
 #include "lodeline/batch/loops/initial_correction.h"
 #include "lodeline/estimator/self_calibration/intrinsics_model_selection.h"
-#include "lodeline/estimator/state/camera_states.h"
-#include "lodeline/estimator/state/inertial_states.h"
+#include "lodeline/problem/state/camera_states.h"
+#include "lodeline/problem/state/inertial_states.h"
 
 namespace lodeline {
 namespace {

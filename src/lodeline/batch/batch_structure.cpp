@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lodeline/estimator/state/camera_states.h"
-#include "lodeline/estimator/visual/landmark_host.h"
 #include "lodeline/frontend/stereo/triangulation.h"
+#include "lodeline/problem/marginalization/landmark_host.h"
+#include "lodeline/problem/state/camera_states.h"
 
 namespace lodeline {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "lodeline/estimator/options/options.h"
-#include "lodeline/estimator/problem/factor_builder.h"
-#include "lodeline/estimator/problem/robust_loss.h"
+#include "lodeline/problem/factor_builder.h"
+#include "lodeline/problem/options/options.h"
+#include "lodeline/problem/robust_loss.h"
 
 namespace lodeline {
 

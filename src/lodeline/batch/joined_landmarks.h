@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "lodeline/batch/loops/loop_links.h"
-#include "lodeline/estimator/options/options.h"
-#include "lodeline/estimator/problem/factor_builder.h"
+#include "lodeline/problem/factor_builder.h"
+#include "lodeline/problem/options/options.h"
 
 namespace lodeline {
 

@@ -1,6 +1,6 @@
 // Information that loops add to the system of a BatchProblem.
 #include "lodeline/batch/batch_problem.h"
-#include "lodeline/estimator/visual/landmark_host.h"
+#include "lodeline/problem/marginalization/landmark_host.h"
 
 namespace lodeline {
 namespace {

@@ -8,8 +8,8 @@
 #include "lodeline/batch/batch_problem.h"
 #include "lodeline/batch/refined_frames.h"
 #include "lodeline/estimator/solver/levenberg_marquardt.h"
-#include "lodeline/estimator/state/inertial_states.h"
-#include "lodeline/estimator/visual/landmark_host.h"
+#include "lodeline/problem/marginalization/landmark_host.h"
+#include "lodeline/problem/state/inertial_states.h"
 #include "lodeline/util/thread_clock.h"
 
 namespace lodeline {

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "lodeline/batch/batch_problem.h"
-#include "lodeline/estimator/state/camera_states.h"
 #include "lodeline/estimator/trials/dive_consistency.h"
 #include "lodeline/estimator/trials/scene.h"
+#include "lodeline/problem/state/camera_states.h"
 
 namespace lodeline {
 namespace {

@@ -5,9 +5,9 @@
 
 #include "lodeline/estimator/magnetometer/field/magnetometer_states.h"
 #include "lodeline/estimator/pressure/depth_states.h"
-#include "lodeline/estimator/state/inertial_states.h"
 #include "lodeline/estimator/uncertainty/covariance_inflation.h"
 #include "lodeline/estimator/uncertainty/reported_covariance.h"
+#include "lodeline/problem/state/inertial_states.h"
 
 namespace lodeline {
 namespace {

@@ -9,16 +9,16 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/estimator/initialization/start.h"
 #include "lodeline/estimator/monitoring/inertial_monitor.h"
-#include "lodeline/estimator/problem/covariance.h"
-#include "lodeline/estimator/problem/robust_loss.h"
 #include "lodeline/estimator/sensor_registry.h"
 #include "lodeline/estimator/solver/window_update.h"
-#include "lodeline/estimator/state/camera_states.h"
-#include "lodeline/estimator/state/inertial_states.h"
 #include "lodeline/estimator/uncertainty/reported_covariance.h"
-#include "lodeline/estimator/visual/keyframe_policy.h"
-#include "lodeline/estimator/visual/landmark_host.h"
 #include "lodeline/estimator/visual/landmarks.h"
+#include "lodeline/problem/covariance.h"
+#include "lodeline/problem/marginalization/keyframe_policy.h"
+#include "lodeline/problem/marginalization/landmark_host.h"
+#include "lodeline/problem/robust_loss.h"
+#include "lodeline/problem/state/camera_states.h"
+#include "lodeline/problem/state/inertial_states.h"
 
 namespace lodeline {
 

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "lodeline/estimator/state/inertial_states.h"
 #include "lodeline/geometry/so3.h"
 #include "lodeline/imu/propagation.h"
+#include "lodeline/problem/state/inertial_states.h"
 #include "lodeline/util/angles.h"
 #include "lodeline/util/thread_clock.h"
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "lodeline/diagnostics.h"
-#include "lodeline/estimator/options/options.h"
 #include "lodeline/estimator/sensor/sensor_fusion.h"
+#include "lodeline/problem/options/options.h"
 #include "lodeline/rig.h"
 
 namespace lodeline {

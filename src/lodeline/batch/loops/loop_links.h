@@ -8,7 +8,7 @@
 
 #include "lodeline/batch/loops/loop_observation.h"
 #include "lodeline/cameras/camera.h"
-#include "lodeline/estimator/state/window.h"
+#include "lodeline/problem/state/window.h"
 
 namespace lodeline {
 

@@ -11,9 +11,9 @@
 #include "lodeline/estimator/dvl/dvl_rows.h"
 #include "lodeline/estimator/dvl/dvl_trust.h"
 #include "lodeline/estimator/dvl/ping_integrator.h"
-#include "lodeline/estimator/options/options.h"
-#include "lodeline/estimator/problem/covariance.h"
 #include "lodeline/estimator/sensor/sensor_fusion.h"
+#include "lodeline/problem/covariance.h"
+#include "lodeline/problem/options/options.h"
 #include "lodeline/rig.h"
 
 namespace lodeline {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "lodeline/estimator/dvl/dvl_measurement.h"
-#include "lodeline/estimator/problem/covariance.h"
+#include "lodeline/problem/covariance.h"
 
 namespace lodeline {
 

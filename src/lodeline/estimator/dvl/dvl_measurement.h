@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "lodeline/estimator/dvl/dvl_factor.h"
-#include "lodeline/estimator/options/dvl_options.h"
-#include "lodeline/estimator/state/measurement.h"
+#include "lodeline/problem/options/dvl_options.h"
+#include "lodeline/problem/state/measurement.h"
 
 namespace lodeline {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "lodeline/estimator/dvl/dvl_factor.h"
-#include "lodeline/estimator/state/window.h"
+#include "lodeline/problem/state/window.h"
 
 namespace lodeline {
 

@@ -10,10 +10,10 @@
 #include "lodeline/estimator/initialization/start.h"
 #include "lodeline/estimator/initialization/visual_inertial_alignment.h"
 #include "lodeline/estimator/initialization/visual_structure.h"
-#include "lodeline/estimator/problem/covariance.h"
 #include "lodeline/estimator/solver/window_solver.h"
 #include "lodeline/estimator/visual/landmarks.h"
 #include "lodeline/imu/gravity_alignment.h"
+#include "lodeline/problem/covariance.h"
 
 namespace lodeline {
 namespace {

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "lodeline/estimator/initialization/visual_inertial_alignment.h"
-#include "lodeline/estimator/options/options.h"
-#include "lodeline/estimator/problem/factor_builder.h"
 #include "lodeline/estimator/sensor/sensor_fusion.h"
-#include "lodeline/estimator/state/window.h"
 #include "lodeline/estimator/zero_velocity/stationary_detector.h"
+#include "lodeline/problem/factor_builder.h"
+#include "lodeline/problem/options/options.h"
+#include "lodeline/problem/state/window.h"
 
 namespace lodeline {
 

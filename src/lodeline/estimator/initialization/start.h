@@ -1,8 +1,8 @@
 #pragma once
 
-#include "lodeline/estimator/options/options.h"
-#include "lodeline/estimator/state/window.h"
 #include "lodeline/factors/prior_factor.h"
+#include "lodeline/problem/options/options.h"
+#include "lodeline/problem/state/window.h"
 
 namespace lodeline {
 

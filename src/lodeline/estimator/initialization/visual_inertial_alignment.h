@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "lodeline/estimator/state/measurement.h"
 #include "lodeline/imu/preintegration.h"
+#include "lodeline/problem/state/measurement.h"
 #include "lodeline/types.h"
 
 namespace lodeline {

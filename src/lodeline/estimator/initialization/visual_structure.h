@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "lodeline/estimator/initialization/relative_pose.h"
-#include "lodeline/estimator/options/options.h"
-#include "lodeline/estimator/problem/factor_builder.h"
-#include "lodeline/estimator/state/window.h"
+#include "lodeline/problem/factor_builder.h"
+#include "lodeline/problem/options/options.h"
+#include "lodeline/problem/state/window.h"
 
 namespace lodeline {
 

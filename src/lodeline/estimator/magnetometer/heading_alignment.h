@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "lodeline/estimator/options/magnetometer_options.h"
-#include "lodeline/estimator/state/window.h"
 #include "lodeline/factors/prior_factor.h"
+#include "lodeline/problem/options/magnetometer_options.h"
+#include "lodeline/problem/state/window.h"
 
 namespace lodeline {
 

@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "lodeline/estimator/magnetometer/field/field_reading.h"
-#include "lodeline/estimator/state/inertial_states.h"
 #include "lodeline/estimator/uncertainty/time_correlated_error.h"
 #include "lodeline/geometry/so3.h"
+#include "lodeline/problem/state/inertial_states.h"
 
 namespace lodeline {
 namespace {

@@ -19,10 +19,10 @@
 #include "lodeline/estimator/magnetometer/field/student_t_weight.h"
 #include "lodeline/estimator/magnetometer/heading_alignment.h"
 #include "lodeline/estimator/magnetometer/map/mapped_field.h"
-#include "lodeline/estimator/options/options.h"
-#include "lodeline/estimator/problem/covariance.h"
 #include "lodeline/estimator/sensor/sensor_fusion.h"
-#include "lodeline/estimator/solver/marginalizer.h"
+#include "lodeline/problem/covariance.h"
+#include "lodeline/problem/marginalization/marginalizer.h"
+#include "lodeline/problem/options/options.h"
 
 namespace lodeline {
 

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "lodeline/estimate.h"
-#include "lodeline/estimator/options/options.h"
+#include "lodeline/problem/options/options.h"
 #include "lodeline/types.h"
 
 namespace lodeline {

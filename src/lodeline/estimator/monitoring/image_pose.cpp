@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "lodeline/estimator/state/camera_states.h"
 #include "lodeline/factors/intrinsics_factor.h"
 #include "lodeline/geometry/so3.h"
+#include "lodeline/problem/state/camera_states.h"
 #include "lodeline/util/median.h"
 
 namespace lodeline {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <span>
 
-#include "lodeline/estimator/problem/factor_builder.h"
-#include "lodeline/estimator/state/window.h"
+#include "lodeline/problem/factor_builder.h"
+#include "lodeline/problem/state/window.h"
 
 namespace lodeline {
 

@@ -8,9 +8,9 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/estimator/monitoring/motion_innovation.h"
 #include "lodeline/estimator/monitoring/vibration_monitor.h"
-#include "lodeline/estimator/options/options.h"
-#include "lodeline/estimator/problem/factor_builder.h"
-#include "lodeline/estimator/state/window.h"
+#include "lodeline/problem/factor_builder.h"
+#include "lodeline/problem/options/options.h"
+#include "lodeline/problem/state/window.h"
 
 namespace lodeline {
 

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "lodeline/estimator/problem/factor_builder.h"
-#include "lodeline/estimator/state/window.h"
+#include "lodeline/problem/factor_builder.h"
+#include "lodeline/problem/state/window.h"
 
 namespace lodeline {
 

@@ -6,16 +6,16 @@
 
 #include "lodeline/diagnostics.h"
 #include "lodeline/estimate.h"
-#include "lodeline/estimator/options/options.h"
 #include "lodeline/estimator/pressure/depth_gate.h"
 #include "lodeline/estimator/pressure/depth_measurement.h"
 #include "lodeline/estimator/pressure/depth_states.h"
 #include "lodeline/estimator/pressure/gauge_monitor.h"
 #include "lodeline/estimator/pressure/vertical_motion.h"
 #include "lodeline/estimator/pressure/water_density_prior.h"
-#include "lodeline/estimator/problem/covariance.h"
 #include "lodeline/estimator/sensor/sensor_fusion.h"
-#include "lodeline/estimator/solver/marginalizer.h"
+#include "lodeline/problem/covariance.h"
+#include "lodeline/problem/marginalization/marginalizer.h"
+#include "lodeline/problem/options/options.h"
 
 namespace lodeline {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "lodeline/estimator/state/measurement.h"
 #include "lodeline/factors/sensors/depth_factor.h"
+#include "lodeline/problem/state/measurement.h"
 
 namespace lodeline {
 

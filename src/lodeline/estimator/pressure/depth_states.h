@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lodeline/estimator/state/window.h"
+#include "lodeline/problem/state/window.h"
 
 namespace lodeline {
 

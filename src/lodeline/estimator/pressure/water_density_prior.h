@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "lodeline/estimator/state/parameter_block.h"
+#include "lodeline/problem/state/parameter_block.h"
 
 namespace lodeline {
 

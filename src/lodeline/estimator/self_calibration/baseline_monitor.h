@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "lodeline/diagnostics.h"
-#include "lodeline/estimator/state/camera_states.h"
+#include "lodeline/problem/state/camera_states.h"
 #include "lodeline/rig.h"
 
 namespace lodeline {

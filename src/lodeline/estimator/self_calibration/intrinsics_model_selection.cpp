@@ -7,8 +7,8 @@
 #include <limits>
 #include <optional>
 
-#include "lodeline/estimator/state/camera_states.h"
 #include "lodeline/factors/intrinsics_factor.h"
+#include "lodeline/problem/state/camera_states.h"
 
 namespace lodeline {
 namespace {

@@ -3,9 +3,9 @@
 #include <utility>
 #include <vector>
 
-#include "lodeline/estimator/options/options.h"
-#include "lodeline/estimator/problem/covariance.h"
-#include "lodeline/estimator/state/window.h"
+#include "lodeline/problem/covariance.h"
+#include "lodeline/problem/options/options.h"
+#include "lodeline/problem/state/window.h"
 
 namespace lodeline {
 

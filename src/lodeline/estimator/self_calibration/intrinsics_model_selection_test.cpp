@@ -6,9 +6,9 @@
 
 #include "lodeline/cameras/camera.h"
 #include "lodeline/estimator/estimator.h"
-#include "lodeline/estimator/state/camera_states.h"
 #include "lodeline/estimator/trials/scene.h"
 #include "lodeline/estimator/uncertainty/reported_covariance.h"
+#include "lodeline/problem/state/camera_states.h"
 
 namespace lodeline {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/estimator/state/parameter_block.h"
+#include "lodeline/problem/state/parameter_block.h"
 
 namespace lodeline {
 

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "lodeline/estimate.h"
-#include "lodeline/estimator/problem/covariance.h"
 #include "lodeline/estimator/sensor/batch_state.h"
-#include "lodeline/estimator/solver/marginalizer.h"
-#include "lodeline/estimator/state/window.h"
+#include "lodeline/problem/covariance.h"
+#include "lodeline/problem/marginalization/marginalizer.h"
+#include "lodeline/problem/state/window.h"
 #include "lodeline/sensors/sensor_readings.h"
 
 namespace lodeline {

@@ -11,8 +11,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "lodeline/estimator/problem/normal_equations.h"
-#include "lodeline/estimator/problem/window_terms.h"
+#include "lodeline/problem/normal_equations.h"
+#include "lodeline/problem/window_terms.h"
 
 namespace lodeline {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "lodeline/estimator/problem/factor_builder.h"
 #include "lodeline/estimator/solver/levenberg_marquardt.h"
+#include "lodeline/problem/factor_builder.h"
 
 namespace lodeline {
 

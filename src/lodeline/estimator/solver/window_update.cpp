@@ -4,11 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include "lodeline/estimator/problem/covariance.h"
-#include "lodeline/estimator/problem/prior_terms.h"
-#include "lodeline/estimator/problem/window_cholesky.h"
 #include "lodeline/estimator/solver/levenberg_marquardt.h"
 #include "lodeline/estimator/visual/reprojection_system.h"
+#include "lodeline/problem/covariance.h"
+#include "lodeline/problem/prior_terms.h"
+#include "lodeline/problem/window_cholesky.h"
 
 namespace lodeline {
 namespace {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "lodeline/estimator/problem/covariance.h"
-#include "lodeline/estimator/problem/window_terms.h"
 #include "lodeline/estimator/solver/levenberg_marquardt.h"
 #include "lodeline/estimator/visual/landmark_linearization_cache.h"
+#include "lodeline/problem/covariance.h"
+#include "lodeline/problem/window_terms.h"
 
 namespace lodeline {
 

@@ -1,5 +1,5 @@
 #include "lodeline/estimator/solver/window_update.h"
-#include "lodeline/estimator/problem/covariance.h"
+#include "lodeline/problem/covariance.h"
 
 #include <gtest/gtest.h>
 

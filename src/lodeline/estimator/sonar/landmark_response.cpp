@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "lodeline/estimator/problem/normal_equations.h"
+#include "lodeline/problem/normal_equations.h"
 
 namespace lodeline {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "lodeline/estimator/state/factor.h"
+#include "lodeline/problem/state/factor.h"
 #include "lodeline/types.h"
 
 namespace lodeline {

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "lodeline/estimator/problem/normal_equations.h"
 #include "lodeline/estimator/sonar/sonar_range_factor.h"
 #include "lodeline/estimator/trials/test_window.h"
 #include "lodeline/factors/numeric_jacobian.h"
+#include "lodeline/problem/normal_equations.h"
 
 namespace lodeline {
 namespace {

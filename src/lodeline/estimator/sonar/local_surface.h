@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "lodeline/estimator/options/sonar_options.h"
-#include "lodeline/estimator/problem/factor_builder.h"
 #include "lodeline/estimator/sonar/sonar_range_factor.h"
-#include "lodeline/estimator/state/window.h"
+#include "lodeline/problem/factor_builder.h"
+#include "lodeline/problem/options/sonar_options.h"
+#include "lodeline/problem/state/window.h"
 
 namespace lodeline {
 

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "lodeline/diagnostics.h"
-#include "lodeline/estimator/options/options.h"
 #include "lodeline/estimator/sensor/sensor_fusion.h"
 #include "lodeline/estimator/sonar/echo_source.h"
 #include "lodeline/estimator/sonar/sonar_measurement.h"
+#include "lodeline/problem/options/options.h"
 #include "lodeline/rig.h"
 
 namespace lodeline {

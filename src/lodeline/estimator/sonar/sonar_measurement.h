@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "lodeline/estimator/sonar/local_surface.h"
-#include "lodeline/estimator/state/measurement.h"
+#include "lodeline/problem/state/measurement.h"
 
 namespace lodeline {
 

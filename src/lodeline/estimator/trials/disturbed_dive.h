@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "lodeline/estimate.h"
-#include "lodeline/estimator/options/options.h"
 #include "lodeline/estimator/trials/heading_trial.h"
+#include "lodeline/problem/options/options.h"
 
 namespace lodeline {
 

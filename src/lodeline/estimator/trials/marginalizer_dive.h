@@ -1,9 +1,9 @@
 #pragma once
 
 #include "lodeline/estimator/initialization/start.h"
-#include "lodeline/estimator/solver/marginalizer.h"
 #include "lodeline/estimator/trials/test_window.h"
 #include "lodeline/estimator/visual/landmarks.h"
+#include "lodeline/problem/marginalization/marginalizer.h"
 
 namespace lodeline {
 

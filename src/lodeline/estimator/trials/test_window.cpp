@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "lodeline/estimator/initialization/start.h"
-#include "lodeline/estimator/state/camera_states.h"
 #include "lodeline/estimator/visual/landmarks.h"
+#include "lodeline/problem/state/camera_states.h"
 
 namespace lodeline {
 

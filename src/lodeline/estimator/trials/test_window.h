@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "lodeline/estimator/problem/factor_builder.h"
 #include "lodeline/estimator/trials/scene.h"
 #include "lodeline/factors/intrinsics_factor.h"
+#include "lodeline/problem/factor_builder.h"
 
 namespace lodeline {
 

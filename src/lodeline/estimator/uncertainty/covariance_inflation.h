@@ -4,8 +4,8 @@
 #include <array>
 #include <optional>
 
-#include "lodeline/estimator/options/options.h"
 #include "lodeline/imu/propagation.h"
+#include "lodeline/problem/options/options.h"
 #include "lodeline/types.h"
 
 namespace lodeline {

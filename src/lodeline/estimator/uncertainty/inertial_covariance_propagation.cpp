@@ -4,8 +4,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 
-#include "lodeline/estimator/problem/covariance.h"
-#include "lodeline/estimator/problem/normal_equations.h"
+#include "lodeline/problem/covariance.h"
+#include "lodeline/problem/normal_equations.h"
 
 namespace lodeline {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "lodeline/estimator/self_calibration/intrinsics_model_selection.h"
-#include "lodeline/estimator/state/camera_states.h"
+#include "lodeline/problem/state/camera_states.h"
 
 namespace lodeline {
 namespace {

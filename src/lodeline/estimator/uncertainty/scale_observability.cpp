@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "lodeline/estimator/self_calibration/intrinsics_model_selection.h"
-#include "lodeline/estimator/state/camera_states.h"
-#include "lodeline/estimator/state/inertial_states.h"
 #include "lodeline/estimator/visual/landmarks.h"
+#include "lodeline/problem/state/camera_states.h"
+#include "lodeline/problem/state/inertial_states.h"
 
 namespace lodeline {
 namespace {

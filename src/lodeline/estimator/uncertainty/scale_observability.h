@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "lodeline/estimate.h"
-#include "lodeline/estimator/options/options.h"
-#include "lodeline/estimator/state/window.h"
+#include "lodeline/problem/options/options.h"
+#include "lodeline/problem/state/window.h"
 #include "lodeline/rig.h"
 
 namespace lodeline {
@@ -18,7 +18,7 @@ namespace lodeline {
 ///   what the robust loss leaves of it;
 /// - accelerometer: changes of the acceleration compared with the noise of its integral. A constant part
 ///   counts as bias and tilt. The sigma is never below the 0.1 % that files leave open, nor below
-///   uncalibrated_sigma of an IMU that may never have been calibrated (estimator/state/inertial_states.h);
+///   uncalibrated_sigma of an IMU that may never have been calibrated (problem/state/inertial_states.h);
 /// - depth: changes of the height compared with the readings' sigma, and the density of the water;
 /// - DVL: its velocities compared with their noise, and the calibration of its scale.
 class ScaleObservability {

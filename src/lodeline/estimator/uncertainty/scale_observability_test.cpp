@@ -4,11 +4,11 @@
 
 #include "lodeline/estimator/dvl/dvl_measurement.h"
 #include "lodeline/estimator/self_calibration/intrinsics_model_selection.h"
-#include "lodeline/estimator/state/camera_states.h"
-#include "lodeline/estimator/state/inertial_states.h"
 #include "lodeline/estimator/trials/test_window.h"
 #include "lodeline/estimator/visual/landmarks.h"
 #include "lodeline/factors/intrinsics_factor.h"
+#include "lodeline/problem/state/camera_states.h"
+#include "lodeline/problem/state/inertial_states.h"
 
 namespace lodeline {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "lodeline/estimator/problem/simd_gemm.h"
 #include "lodeline/factors/intrinsics_factor.h"
 #include "lodeline/factors/rolling_shutter.h"
+#include "lodeline/problem/simd_gemm.h"
 
 namespace lodeline {
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <vector>
 
-#include "lodeline/estimator/problem/normal_equations.h"
-#include "lodeline/estimator/state/camera_states.h"
 #include "lodeline/estimator/visual/camera_views.h"
+#include "lodeline/problem/normal_equations.h"
+#include "lodeline/problem/state/camera_states.h"
 
 namespace lodeline {
 

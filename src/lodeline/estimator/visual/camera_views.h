@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "lodeline/estimator/problem/factor_builder.h"
+#include "lodeline/problem/factor_builder.h"
 
 namespace lodeline {
 

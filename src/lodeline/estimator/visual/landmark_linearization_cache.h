@@ -5,11 +5,11 @@
 #include <utility>
 #include <vector>
 
-#include "lodeline/estimator/problem/factor_builder.h"
-#include "lodeline/estimator/problem/normal_equations.h"
-#include "lodeline/estimator/problem/robust_loss.h"
-#include "lodeline/estimator/state/window.h"
 #include "lodeline/factors/prior_factor.h"
+#include "lodeline/problem/factor_builder.h"
+#include "lodeline/problem/normal_equations.h"
+#include "lodeline/problem/robust_loss.h"
+#include "lodeline/problem/state/window.h"
 
 namespace lodeline {
 

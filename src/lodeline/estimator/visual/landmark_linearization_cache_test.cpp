@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "lodeline/estimator/trials/test_window.h"
-#include "lodeline/estimator/visual/landmark_host.h"
 #include "lodeline/estimator/visual/landmarks.h"
 #include "lodeline/estimator/visual/reprojection_system.h"
 #include "lodeline/geometry/so3.h"
+#include "lodeline/problem/marginalization/landmark_host.h"
 
 namespace lodeline {
 namespace {

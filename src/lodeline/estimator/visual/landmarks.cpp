@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "lodeline/estimator/state/camera_states.h"
 #include "lodeline/estimator/visual/reprojection_system.h"
 #include "lodeline/factors/intrinsics_factor.h"
+#include "lodeline/problem/state/camera_states.h"
 #include "lodeline/util/median.h"
 
 namespace lodeline {

@@ -2,10 +2,10 @@
 
 #include <optional>
 
-#include "lodeline/estimator/options/options.h"
-#include "lodeline/estimator/problem/factor_builder.h"
-#include "lodeline/estimator/problem/robust_loss.h"
-#include "lodeline/estimator/state/window.h"
+#include "lodeline/problem/factor_builder.h"
+#include "lodeline/problem/options/options.h"
+#include "lodeline/problem/robust_loss.h"
+#include "lodeline/problem/state/window.h"
 
 namespace lodeline {
 

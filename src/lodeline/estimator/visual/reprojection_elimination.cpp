@@ -1,7 +1,7 @@
 // The part of ReprojectionSystem that eliminates landmarks from the nodes' equations and finds their steps.
 
-#include "lodeline/estimator/problem/simd_gemm.h"
 #include "lodeline/estimator/visual/reprojection_system.h"
+#include "lodeline/problem/simd_gemm.h"
 
 namespace lodeline {
 

@@ -4,11 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include "lodeline/estimator/problem/normal_equations.h"
 #include "lodeline/estimator/visual/camera_to_body_chain_rule.h"
 #include "lodeline/estimator/visual/camera_views.h"
 #include "lodeline/estimator/visual/reprojection_hessian.h"
 #include "lodeline/factors/rolling_shutter.h"
+#include "lodeline/problem/normal_equations.h"
 
 namespace lodeline {
 

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "lodeline/estimator/problem/prior_terms.h"
 #include "lodeline/estimator/trials/test_window.h"
+#include "lodeline/problem/prior_terms.h"
 
 namespace lodeline {
 namespace {

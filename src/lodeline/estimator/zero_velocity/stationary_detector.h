@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "lodeline/ahrs/rest_detector.h"
-#include "lodeline/estimator/options/options.h"
 #include "lodeline/frontend/tracking/tracks.h"
+#include "lodeline/problem/options/options.h"
 #include "lodeline/rig.h"
 
 namespace lodeline {

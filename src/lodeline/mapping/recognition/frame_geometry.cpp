@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "lodeline/estimator/problem/factor_builder.h"
-#include "lodeline/estimator/visual/landmark_host.h"
+#include "lodeline/problem/factor_builder.h"
+#include "lodeline/problem/marginalization/landmark_host.h"
 
 namespace lodeline {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "lodeline/estimator/problem/covariance.h"
 #include "lodeline/geometry/so3.h"
+#include "lodeline/problem/covariance.h"
 #include "lodeline/util/files/output_file.h"
 #include "lodeline/util/time/time_steps.h"
 

@@ -9,9 +9,9 @@
 #include "lodeline/diagnostics.h"
 #include "lodeline/estimator/magnetometer/currents/current_monitor.h"
 #include "lodeline/estimator/magnetometer/currents/current_states.h"
-#include "lodeline/estimator/problem/covariance.h"
 #include "lodeline/estimator/sensor/batch_state.h"
 #include "lodeline/magnetometer/currents/current_track.h"
+#include "lodeline/problem/covariance.h"
 
 namespace lodeline {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "lodeline/estimator/state/window.h"
+#include "lodeline/problem/state/window.h"
 
 namespace lodeline {
 

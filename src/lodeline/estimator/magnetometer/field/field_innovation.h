@@ -5,8 +5,8 @@
 
 #include "lodeline/ahrs/magnetometer_mean.h"
 #include "lodeline/estimator/magnetometer/field/magnetometer_gate.h"
-#include "lodeline/estimator/problem/covariance.h"
-#include "lodeline/estimator/state/window.h"
+#include "lodeline/problem/covariance.h"
+#include "lodeline/problem/state/window.h"
 
 namespace lodeline {
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "lodeline/ahrs/magnetometer_mean.h"
-#include "lodeline/estimator/state/measurement.h"
 #include "lodeline/factors/sensors/magnetometer_field_factor.h"
+#include "lodeline/problem/state/measurement.h"
 
 namespace lodeline {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lodeline/estimator/state/measurement.h"
+#include "lodeline/problem/state/measurement.h"
 
 namespace lodeline {
 

@@ -6,8 +6,8 @@
 #include <Eigen/Core>
 
 #include "lodeline/ahrs/magnetometer_mean.h"
-#include "lodeline/estimator/options/magnetometer_options.h"
 #include "lodeline/estimator/uncertainty/time_correlated_error.h"
+#include "lodeline/problem/options/magnetometer_options.h"
 #include "lodeline/types.h"
 
 namespace lodeline {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "lodeline/estimator/options/magnetometer_options.h"
+#include "lodeline/problem/options/magnetometer_options.h"
 #include "lodeline/types.h"
 
 namespace lodeline {

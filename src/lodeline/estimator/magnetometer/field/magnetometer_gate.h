@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "lodeline/estimate.h"
-#include "lodeline/estimator/options/magnetometer_options.h"
+#include "lodeline/problem/options/magnetometer_options.h"
 #include "lodeline/types.h"
 
 namespace lodeline {

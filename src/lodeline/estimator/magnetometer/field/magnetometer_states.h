@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "lodeline/estimator/options/magnetometer_options.h"
-#include "lodeline/estimator/state/window.h"
+#include "lodeline/problem/options/magnetometer_options.h"
+#include "lodeline/problem/state/window.h"
 #include "lodeline/rig.h"
 
 namespace lodeline {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "lodeline/estimator/options/magnetometer_options.h"
+#include "lodeline/problem/options/magnetometer_options.h"
 #include "lodeline/types.h"
 
 namespace lodeline {

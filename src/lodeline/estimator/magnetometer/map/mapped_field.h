@@ -5,9 +5,9 @@
 
 #include "lodeline/ahrs/magnetometer_mean.h"
 #include "lodeline/diagnostics.h"
-#include "lodeline/estimator/problem/covariance.h"
-#include "lodeline/estimator/state/window.h"
 #include "lodeline/magnetometer/field_map/field_map.h"
+#include "lodeline/problem/covariance.h"
+#include "lodeline/problem/state/window.h"
 
 namespace lodeline {
 

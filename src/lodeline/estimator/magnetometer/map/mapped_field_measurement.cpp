@@ -1,7 +1,7 @@
 #include "lodeline/estimator/magnetometer/map/mapped_field_measurement.h"
 
-#include "lodeline/estimator/state/window.h"
 #include "lodeline/factors/sensors/magnetometer_map_factor.h"
+#include "lodeline/problem/state/window.h"
 
 namespace lodeline {
 
