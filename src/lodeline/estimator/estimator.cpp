@@ -364,7 +364,8 @@ void Estimator::report(const FrameTracks& tracks, FrameEstimate* estimate) {
   estimate->accelerometer_axes = accelerometerAxes(window_);
   for (const auto& sensor : sensors_) sensor->report(window_, &estimate->sensors);
   const auto& gauge = estimate->sensors.of<DepthEstimate>().gauge;
-  estimate->scale = scale_.add(window_, gauge ? gauge->told_sigma : options_.depth.density_ratio_sigma);
+  estimate->scale = scale_.add(window_, gauge ? gauge->told_sigma : options_.depth.density_ratio_sigma,
+                               estimate->posterior_covariance.block<3, 3>(6, 6));
   estimate->landmarks = statistics.landmarks;
   estimate->scene_distance_m = meanLandmarkDistance_m(window_, newest.id, 0);
   estimate->reprojection_rms_sigmas = statistics.rms_sigmas;

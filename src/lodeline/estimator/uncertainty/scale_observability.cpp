@@ -45,7 +45,8 @@ ScaleObservability::ScaleObservability(const Rig& rig, const EstimatorOptions& o
       (rig.cameras[1].body_from_camera.translation - rig.cameras[0].body_from_camera.translation).norm();
 }
 
-ScaleInformation ScaleObservability::add(const Window& window, double density_sigma) {
+ScaleInformation ScaleObservability::add(const Window& window, double density_sigma,
+                                         const Mat3& velocity_covariance_W) {
   const Frame& newest = window.newest();
   if (last_) {
     const double keep = std::exp(-(newest.time - *last_).seconds() / kMemory_s);
@@ -57,9 +58,11 @@ ScaleInformation ScaleObservability::add(const Window& window, double density_si
   if (newest.from_previous && window.frames().size() > 1) {
     const Frame& before = *window.frames()[window.frames().size() - 2];
     const double elapsed_s = newest.from_previous->dt_s();
-    const double speed_variance = newest.from_previous->covariance().block<3, 3>(3, 3).trace() / 3.0;
+    const double speed_variance =
+        (newest.from_previous->covariance().block<3, 3>(3, 3) + velocity_covariance_W).trace() / 3.0;
     const Vec3 acceleration_W = (newest.velocity_W() - before.velocity_W()) / elapsed_s;
-    accelerations_.add(acceleration_W, elapsed_s * elapsed_s / speed_variance);
+    if (std::isfinite(speed_variance))  // not so where the covariance is lost in rounding
+      accelerations_.add(acceleration_W, elapsed_s * elapsed_s / speed_variance);
   }
   for (const auto& measurement : newest.measurements) {
     speeds_ += measurement->speedInformation();

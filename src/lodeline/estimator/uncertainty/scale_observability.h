@@ -16,9 +16,10 @@ namespace lodeline {
 ///   rotation of one camera moves all points. A rotation that images confirm is known to a tenth of its
 ///   sigma (IntrinsicsModelSelection). The file's information about a baseline that was found to be wrong is
 ///   what the robust loss leaves of it;
-/// - accelerometer: changes of the acceleration compared with the noise of its integral. A constant part
-///   counts as bias and tilt. The sigma is never below the 0.1 % that files leave open, nor below
-///   uncalibrated_sigma of an IMU that may never have been calibrated (problem/state/inertial_states.h);
+/// - accelerometer: changes of the velocity compared with the noise of the integrated acceleration and with
+///   that of the velocity which images give. A constant part counts as bias and tilt. The sigma is never
+///   below the 0.1 % that files leave open, nor below uncalibrated_sigma of an IMU that may never have been
+///   calibrated (problem/state/inertial_states.h);
 /// - depth: changes of the height compared with the readings' sigma, and the density of the water;
 /// - DVL: its velocities compared with their noise, and the calibration of its scale.
 class ScaleObservability {
@@ -26,8 +27,8 @@ class ScaleObservability {
   ScaleObservability(const Rig& rig, const EstimatorOptions& options);
 
   /// Updates the information from a window whose newest frame is solved. `density_sigma`: sigma of a depth
-  /// gauge's density ratio (k of DepthFactor) without images.
-  ScaleInformation add(const Window& window, double density_sigma);
+  /// gauge's density ratio (k of DepthFactor) without images. `velocity_covariance_W`: of the newest frame.
+  ScaleInformation add(const Window& window, double density_sigma, const Mat3& velocity_covariance_W);
 
  private:
   /// Weighted scatter of a quantity about its mean, with fading weights.

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "lodeline/estimator/dvl/dvl_measurement.h"
 #include "lodeline/estimator/self_calibration/intrinsics_model_selection.h"
 #include "lodeline/estimator/trials/test_window.h"
@@ -22,7 +25,8 @@ EstimatorOptions optionsOf(bool is_calibrated) {
 
 /// Information after all frames of a scene, at their true states.
 ScaleInformation informationAfter(int cameras, double liveliness, double depth_sigma_m, double sink_m_per_s,
-                                  const EstimatorOptions& options = optionsOf(true)) {
+                                  const EstimatorOptions& options = optionsOf(true),
+                                  double velocity_sigma_m_per_s = 0.0) {
   TestSceneOptions scene_options;
   scene_options.cameras = cameras;
   scene_options.liveliness = liveliness;
@@ -40,7 +44,8 @@ ScaleInformation informationAfter(int cameras, double liveliness, double depth_s
     depth.sigma_m = depth_sigma_m;
     if (depth_sigma_m > 0.0) frame.measurements.set(depth);
     createLandmarks(test.window, test.factors, test.options.landmark);
-    information = budget.add(test.window, options.depth.density_ratio_sigma);
+    information = budget.add(test.window, options.depth.density_ratio_sigma,
+                             std::pow(velocity_sigma_m_per_s, 2) * Mat3::Identity());
   }
   return information;
 }
@@ -57,6 +62,16 @@ TEST(ScaleObservability, AccelerationCountsWithItsSquare) {
   const double lively = informationAfter(1, 1.0, 0.0, 0.0).accelerometer;
   EXPECT_NEAR(lively / calm, 4.0, 1.5);  // the noise grows with the motion, too
   EXPECT_GT(lively, 100.0);
+}
+
+TEST(ScaleObservability, AccelerationCountsAsFarAsImagesShowIt) {
+  const auto by_velocity = [](double sigma_m_per_s) {
+    return informationAfter(1, 1.0, 0.0, 0.0, optionsOf(true), sigma_m_per_s).accelerometer;
+  };
+  EXPECT_LT(by_velocity(0.1), 0.5 * by_velocity(0.0));
+  EXPECT_NEAR(by_velocity(0.1) / by_velocity(0.2), 4.0, 0.1) << "the noise of the accelerometer is small";
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(by_velocity(unknown), 0.0) << "a covariance that is lost in rounding";
 }
 
 TEST(ScaleObservability, NoAccelerometerIsTrustedBeyondItsScale) {
@@ -89,7 +104,7 @@ double stereoSigma(double found_m, bool is_file_held, const CameraCalibrationOpt
   test.calibrate(TestWindow::Lens{});
   believeInFiles(test.window, calibration, is_file_held);
   cameraStates(test.window).secondary.front()->value[3] = found_m;
-  return 1.0 / std::sqrt(ScaleObservability(test.rig, options).add(test.window, 1.0).stereo);
+  return 1.0 / std::sqrt(ScaleObservability(test.rig, options).add(test.window, 1.0, Mat3::Zero()).stereo);
 }
 
 TEST(ScaleObservability, FileOfABaselineThatIsOffSaysLittle) {
@@ -132,7 +147,8 @@ double dvlSigma(double speed_m_per_s, double noise_m_per_s, double scale_sigma) 
   DvlMeasurement measurement;
   measurement.pings = {ping};
   test.window.newest().measurements.set(measurement);
-  return 1.0 / std::sqrt(ScaleObservability(test.rig, optionsOf(true)).add(test.window, 1.0).dvl);
+  return 1.0 /
+         std::sqrt(ScaleObservability(test.rig, optionsOf(true)).add(test.window, 1.0, Mat3::Zero()).dvl);
 }
 
 TEST(ScaleObservability, DvlCountsByItsSpeedAndNeverBeyondItsCalibration) {

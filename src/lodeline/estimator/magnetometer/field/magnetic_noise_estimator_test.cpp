@@ -10,7 +10,7 @@
 namespace lodeline {
 namespace {
 
-const Vec3 kField_W(0.0, 24e-6, -38e-6);
+const Vec3 kQuietField_W(0.0, 24e-6, -38e-6);
 
 struct Conditions {
   double correlated_noise_sigma_T = 0.0;  ///< size of an error whose correlation falls to 1/e in 5 s
@@ -47,7 +47,7 @@ class MagneticNoiseEstimatorTest : public testing::Test {
       MagnetometerMean mean;
       mean.time = Time::fromSeconds(time_s_);
       mean.field_B =
-          world_from_body.conjugate() * (kField_W + floor_W) + offset_B + draw(conditions.white_sigma_T);
+          world_from_body.conjugate() * (kQuietField_W + floor_W) + offset_B + draw(conditions.white_sigma_T);
       mean.readings = 1;
       errors_.add(mean, so3::exp(Vec3(tilt.x(), tilt.y(), 0.0)) * world_from_body, Vec3::Zero(),
                   std::pow(conditions.white_sigma_T, 2),
