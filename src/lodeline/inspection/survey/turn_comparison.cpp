@@ -2,7 +2,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "lodeline/geometry/so3.h"
 #include "lodeline/util/median.h"
@@ -212,22 +214,52 @@ class Comparison {
     result->explained = 1.0 - as_calibrated / moments.camera;
     result->explained_at_best = 1.0 - at_best / moments.camera;
     const double variance = at_best / (3.0 * static_cast<double>(pairs.size()));
-    judgeMisalignment(moments, variance, result);
+    judgeMisalignment(pairs, moments, variance, result);
     judgeFocalLength(pairs, moments, variance, result);
   }
 
-  /// The information of the rates on a small rotation is the sum of |w|^2 I - w w^T.
-  void judgeMisalignment(const Moments& moments, double variance, TurnComparison* result) const {
+  /// Covariance of `axes` (rad, body axes) by the jackknife over blocks of successive rotations. Errors of
+  /// rotations by images last as long as a motion does: a translation looks like a small rotation.
+  static Mat3 axesCovariance(const std::vector<Pair>& pairs, const Mat3& axes) {
+    constexpr size_t kBlocks = 12;
+    std::array<Vec3, kBlocks> deviations;
+    Vec3 mean = Vec3::Zero();
+    for (size_t block = 0; block < kBlocks; ++block) {
+      std::vector<Pair> others;
+      for (size_t i = 0; i < pairs.size(); ++i) {
+        if (i * kBlocks / pairs.size() != block) others.push_back(pairs[i]);
+      }
+      TurnComparison without;
+      fitAxes(Moments(others), &without);
+      deviations[block] = without.is_mirrored ? Vec3::Constant(std::numbers::pi)
+                                              : so3::log(Quat(Mat3(without.axes * axes.transpose())));
+      mean += deviations[block] / static_cast<double>(kBlocks);
+    }
+    Mat3 covariance = Mat3::Zero();
+    for (const Vec3& deviation : deviations)
+      covariance += (kBlocks - 1.0) / kBlocks * (deviation - mean) * (deviation - mean).transpose();
+    return covariance;
+  }
+
+  /// The sigma of each direction is the larger of two: that of independent errors, whose information on a
+  /// small rotation is the sum of |w|^2 I - w w^T, and that of axesCovariance().
+  static void judgeMisalignment(const std::vector<Pair>& pairs, const Moments& moments, double variance,
+                                TurnComparison* result) {
     if (result->is_mirrored) return;
     const Vec3 rotation = so3::log(Quat(result->axes));
     const double scale = result->gyroscope_scale;
     const Mat3 information =
         (moments.gyroscope.trace() * Mat3::Identity() - moments.gyroscope) * scale * scale / variance;
+    const Mat3 by_blocks = axesCovariance(pairs, result->axes);
     const Eigen::SelfAdjointEigenSolver<Mat3> solver(information);
     constexpr double kLargestSigma_rad = 0.17;
+    // Quantile of Student's t with 11 degrees of freedom over that of the normal, at 4 sigma.
+    constexpr double kFewBlocks = 1.5;
     for (int i = 0; i < 3; ++i) {
       const Vec3 direction = solver.eigenvectors().col(i);
-      const double sigma = 1.0 / std::sqrt(std::max(1e-12, solver.eigenvalues()[i]));
+      const double independent = 1.0 / std::sqrt(std::max(1e-12, solver.eigenvalues()[i]));
+      const double sigma =
+          std::max(independent, kFewBlocks * std::sqrt(direction.dot(by_blocks * direction)));
       const double part = direction.dot(rotation);
       if (sigma > kLargestSigma_rad) ++result->hidden_axes;
       if (sigma > kLargestSigma_rad || std::abs(part) < kSignificant_sigmas * sigma) continue;

@@ -94,6 +94,39 @@ TEST(TurnComparison, FindsTheRotation) {
   EXPECT_NEAR(comparison->misalignment_rad, error_B.norm(), 0.01);
 }
 
+/// Rotations with errors that last for half a second, as translations and passing fish cause them.
+std::vector<CameraTurn> turnsWithLastingErrors(uint32_t seed, const Quat& body_from_camera) {
+  constexpr double kSigma_rad_per_s = 0.08, kKept = 0.9;  // of one rotation's error in the next
+  std::vector<CameraTurn> result = turns(0.0, body_from_camera);
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0.0, kSigma_rad_per_s);
+  Vec3 error(normal(random), normal(random), normal(random));
+  for (CameraTurn& turn : result) {
+    turn.rate_C += error;
+    error =
+        kKept * error + std::sqrt(1.0 - kKept * kKept) * Vec3(normal(random), normal(random), normal(random));
+  }
+  return result;
+}
+
+TEST(TurnComparison, TakesNoLastingErrorsForARotation) {
+  constexpr int kRuns = 15;
+  int wrong = 0, found = 0;
+  for (uint32_t seed = 1; seed <= kRuns; ++seed) {
+    const auto misalignment_rad = [&](double error_rad) {
+      const Quat turned = so3::exp(Vec3(0.0, error_rad, 0.0)) * kBodyFromCamera;
+      return compareTurns(turnsWithLastingErrors(seed, turned), GyroscopeIntegral(gyroscope()),
+                          kBodyFromCamera)
+          .value()
+          .misalignment_rad;
+    };
+    wrong += misalignment_rad(0.0) > 0.0;
+    found += misalignment_rad(0.6) > 0.3;
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GE(found, kRuns - 1);
+}
+
 TEST(TurnComparison, FindsEveryExchangeOfAxesAndMirrors) {
   for (const Mat3& axes : signedAxes()) {
     const auto comparison = compareTurns(turns(0.0), GyroscopeIntegral(gyroscope(axes)), kBodyFromCamera);
