@@ -105,7 +105,7 @@ void judgeAlternation(const ImuSurvey& imu, Inspection* inspection) {
       inspection, Severity::Serious, 96.0, "imu_interleaved",
       fmt::format("two sensors: every other reading of the accelerometer differs from those between by "
                   "{:.2g} m/s^2, all the time; the readings of two IMUs, or of a raw and a filtered "
-                  "stream, take turns. Write each to a stream of its own",
+                  "stream, take turns. Write each to its stream",
                   imu.alternation_m_per_s2));
 }
 

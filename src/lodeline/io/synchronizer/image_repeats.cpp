@@ -166,7 +166,7 @@ void ImageRepeats::close(View* view) {
   } else {
     diagnostics_->report(
         Severity::Warning, "images_repeated",
-        fmt::format("{}: the image at {} (stamp {} ns) repeats the one before under a stamp of its own; left "
+        fmt::format("{}: the image at {} (stamp {} ns) repeats the one before under another stamp; left "
                     "out. A driver or converter that fills up its frame rate does so: record at the rate of "
                     "the camera",
                     view->name, from, run.first_stamp.nanoseconds()));

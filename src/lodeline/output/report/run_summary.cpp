@@ -198,9 +198,9 @@ std::optional<ScaleInformation> RunSummary::scaleInformation() const {
 }
 
 std::string RunSummary::completionText() const {
-  std::string text = fmt::format("{:.1f} % ({} of {} images gave a pose of their own", 100.0 * completion(),
+  std::string text = fmt::format("{:.1f} % ({} of {} images were tracked", 100.0 * completion(),
                                  posed_ - inertial_ - degraded_, recorded());
-  if (inertial_ > 0) text += fmt::format("; {} by inertial readings alone", inertial_);
+  if (inertial_ > 0) text += fmt::format("; {} poses by inertial readings alone", inertial_);
   if (degraded_ > 0) text += fmt::format("; {} degraded", degraded_);
   return text + ")";
 }

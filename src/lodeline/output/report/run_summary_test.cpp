@@ -46,7 +46,7 @@ TEST(RunSummary, OnlyFramesWithVisionCountAsComplete) {
   summary.recorded_images = 140;
   EXPECT_DOUBLE_EQ(summary.completion(), 0.5);
   EXPECT_THAT(summary.text({}),
-              testing::HasSubstr("50.0 % (70 of 140 images gave a pose of their own; 20 by"));
+              testing::HasSubstr("50.0 % (70 of 140 images were tracked; 20 poses by"));
   Diagnostics diagnostics;
   summary.reportBlindStretches(&diagnostics);
   ASSERT_EQ(diagnostics.count("blind_stretch"), 1);
