@@ -45,8 +45,7 @@ TEST(RunSummary, OnlyFramesWithVisionCountAsComplete) {
       {{Status::Tracking, 60}, {Status::Inertial, 20, 5}, {Status::Degraded, 10}, {Status::Tracking, 10}});
   summary.recorded_images = 140;
   EXPECT_DOUBLE_EQ(summary.completion(), 0.5);
-  EXPECT_THAT(summary.text({}),
-              testing::HasSubstr("50.0 % (70 of 140 images were tracked; 20 poses by"));
+  EXPECT_THAT(summary.text({}), testing::HasSubstr("50.0 % (70 of 140 images were tracked; 20 poses by"));
   Diagnostics diagnostics;
   summary.reportBlindStretches(&diagnostics);
   ASSERT_EQ(diagnostics.count("blind_stretch"), 1);
